@@ -1,0 +1,76 @@
+// A case as it is run: one TOML file plus the --set overrides, read, validated and flattened. Reading collects
+// all errors, each with its place, so that a user mends a case in one go.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace mullion {
+
+/// A parameter value in the declared order of its plug-in.
+struct ParameterValue {
+  std::string name;
+  std::variant<double, std::int64_t, bool, std::string> value;
+  bool is_given = false; ///< by the case, rather than the plug-in's default
+};
+
+struct ModuleCase {
+  std::string instance;  ///< the table's name: "fluid"
+  std::string kind;      ///< from the plug-in: "fluid"
+  std::string plugin;    ///< "euler_1d"
+  std::string path;      ///< of the library
+  bool is_process = false;
+  std::vector<ParameterValue> parameters;
+};
+
+struct InterfaceCase {
+  std::string fluid, structure; ///< "fluid.wall", "structure.wet"
+};
+
+/// A value that the run's summary compares with a measured one: [[expect]] in the case.
+struct Expectation {
+  std::string quantity;       ///< a column of history.csv
+  double amplitude = 0.0;     ///< 0: not given; half of max - min over the run
+  double frequency = 0.0;     ///< [Hz] 0: not given; the dominant frequency
+  std::string source;         ///< where the numbers come from
+};
+
+struct Case {
+  std::string file;
+  std::string name;
+  double start_time = 0.0, end_time = 0.0, dt = 0.0; ///< [s]
+  double call_deadline = 300.0, start_deadline = 600.0; ///< [s]; 0: none
+  std::string on_failure = "stop";
+  std::vector<ModuleCase> modules; ///< in the order fluid, structure, mesh_motion, transfer, then by name
+  std::vector<InterfaceCase> interfaces;
+  double reference_pressure = 0.0;
+  std::string scheme;      ///< the driver's plug-in
+  std::string scheme_path; ///< of the library
+  std::vector<ParameterValue> driver_parameters;
+  std::int64_t output_every = 0;  ///< steps between result files; 0: none
+  bool has_history = true;
+  std::vector<Expectation> expectations;
+  std::string text; ///< the case as it is run, overrides included: what case.toml will say
+};
+
+/// One mistake in a case, with its place.
+struct Diagnostic {
+  std::string place; ///< "piston.toml:12:3" or "--set fluid.cells=x"
+  std::string message;
+};
+
+struct CaseOptions {
+  std::vector<std::string> overrides; ///< "fluid.cells=100", as --set got them
+  bool all_inline = false, all_processes = false;
+};
+
+/// Read and validate. `diagnostics` empty: the case can be run.
+struct CaseResult {
+  Case value;
+  std::vector<Diagnostic> diagnostics;
+};
+CaseResult read_case(const std::string& file, const CaseOptions& options);
+
+} // namespace mullion
