@@ -29,6 +29,13 @@ struct InterfaceCase {
   std::string fluid, structure; ///< "fluid.wall", "structure.wet"
 };
 
+/// Where a received field comes from, as the driver declared it: for showing the topology.
+struct ConnectionCase {
+  std::string receiver; ///< "structure.wet.traction"
+  std::string source;   ///< bound: "fluid.wall.traction"; empty: stored, the driver writes it
+  std::string policy;   ///< "constant", "linear", "quadratic"
+};
+
 /// A value that the run's summary compares with a measured one: [[expect]] in the case.
 struct Expectation {
   std::string quantity;       ///< a column of history.csv
@@ -49,6 +56,7 @@ struct Case {
   std::string scheme;      ///< the driver's plug-in
   std::string scheme_path; ///< of the library
   std::vector<ParameterValue> driver_parameters;
+  std::vector<ConnectionCase> connections;
   std::int64_t output_every = 0;  ///< steps between result files; 0: none
   bool has_history = true;
   std::vector<Expectation> expectations;

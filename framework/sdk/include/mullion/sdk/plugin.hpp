@@ -33,7 +33,7 @@ inline void reset_floating_point()
 #endif
 }
 
-inline TimeStep to_step(const mullion_step& raw) { return {raw.index, raw.begin, raw.end, raw.iteration}; }
+inline TimeStep to_step(const mullion_step& raw) { return {raw.index, raw.begin, raw.end, raw.dt, raw.iteration}; }
 
 /// Run a body and turn whatever it throws into a status and a text.
 template <class Body>

@@ -1,0 +1,35 @@
+// The subcommands of `mullion`: one function each, in a file of its own, composed from the app interface. A
+// command prints its result to standard output and returns an outcome; what it can't do it throws, and main.cpp
+// makes the message and the exit code.
+#pragma once
+
+#include <mullion/app/case_file.hpp>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace mullion::cli {
+
+/// What stands behind the subcommand's name.
+using Arguments = std::vector<std::string>;
+
+/// The outcomes of the design; main.cpp returns them as they are.
+enum Outcome : int { success = 0, run_failed = 1, wrong_usage = 2 };
+
+/// The command line is wrong: main.cpp adds where help is found.
+class UsageError : public std::runtime_error {
+public:
+  using std::runtime_error::runtime_error;
+};
+
+int run_run(const Arguments& arguments);     // run.cpp
+int run_check(const Arguments& arguments);   // check.cpp
+int run_modules(const Arguments& arguments); // modules.cpp
+int run_ps(const Arguments& arguments);      // ps.cpp
+int run_stop(const Arguments& arguments);    // stop.cpp
+
+/// All mistakes of a case on standard error, one a line, `place: error: message`, and their number (check.cpp).
+void print_diagnostics(const std::string& file, const std::vector<Diagnostic>& diagnostics);
+
+} // namespace mullion::cli

@@ -1,0 +1,280 @@
+// read_case(): text, overrides, then table after table; [run], [output] and [[expect]] are read here.
+#include <mullion/app/case_file.hpp>
+
+#include "config/case_reader.hpp"
+#include "config/overrides.hpp"
+#include "config/parameter_table.hpp"
+#include "config/toml_reader.hpp"
+#include "config/toml_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <tuple>
+
+namespace mullion::config {
+namespace {
+
+constexpr std::uintmax_t max_case_bytes = 16u << 20; ///< a larger file is no case somebody wrote
+
+struct RunOptions {
+  std::string name, on_failure = "stop";
+  double start_time = 0.0, end_time = 0.0, dt = 0.0, call_deadline = 300.0, start_deadline = 600.0;
+  static constexpr auto table()
+  {
+    return std::tuple{
+        required_parameter("name", &RunOptions::name, "", "name of the run"),
+        parameter("on_failure", &RunOptions::on_failure, "", "what follows the death of a module's process",
+                  one_of("stop", "respawn")),
+        parameter("start_time", &RunOptions::start_time, "s", "begin of the run"),
+        required_parameter("end_time", &RunOptions::end_time, "s", "end of the run"),
+        required_parameter("dt", &RunOptions::dt, "s", "coupling step", above(0.0)),
+        parameter("call_deadline", &RunOptions::call_deadline, "s", "longest time of one call of a module, 0: no limit",
+                  at_least(0.0)),
+        parameter("start_deadline", &RunOptions::start_deadline, "s", "longest time of a module's start, 0: no limit",
+                  at_least(0.0))};
+  }
+};
+
+struct OutputOptions {
+  std::int64_t every = 0;
+  bool history = true;
+  static constexpr auto table()
+  {
+    return std::tuple{
+        parameter("every", &OutputOptions::every, "1", "steps between two result files, 0: none", at_least(0.0)),
+        parameter("history", &OutputOptions::history, "", "write history.csv")};
+  }
+};
+
+struct ExpectOptions {
+  std::string quantity, source;
+  double amplitude = 0.0, frequency = 0.0;
+  static constexpr auto table()
+  {
+    return std::tuple{
+        required_parameter("quantity", &ExpectOptions::quantity, "", "a column of history.csv"),
+        required_parameter("source", &ExpectOptions::source, "", "where the numbers come from"),
+        parameter("amplitude", &ExpectOptions::amplitude, "", "half of maximum minus minimum, in the quantity's unit",
+                  above(0.0)),
+        parameter("frequency", &ExpectOptions::frequency, "Hz", "dominant frequency", above(0.0))};
+  }
+};
+
+/// A table read into its options; the given flags are in `values`.
+template <class Options>
+Options read_options(const Node& node, const std::string& label, Diagnostics& diagnostics,
+                     std::vector<ParameterValue>& values)
+{
+  values = read_parameters(node, {label, ""}, detail::parameter_specs<Options>(), {}, diagnostics);
+  return detail::read_options<Options>(to_values(values).data());
+}
+
+bool is_given(const std::vector<ParameterValue>& values, std::string_view name)
+{
+  return std::any_of(values.begin(), values.end(), [&](const auto& v) { return v.name == name && v.is_given; });
+}
+
+/// A name becomes a folder and part of a socket's path.
+bool is_run_name(const std::string& name)
+{
+  const auto is_legal = [](char c) {
+    return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || ('0' <= c && c <= '9') || c == '.' || c == '_' ||
+           c == '-';
+  };
+  return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), is_legal) &&
+         name.find_first_not_of('.') != std::string::npos;
+}
+
+void check_times(const Case& value, const Table& table, const std::vector<ParameterValue>& given,
+                 Diagnostics& diagnostics)
+{
+  if (!is_given(given, "end_time")) return;
+  const Place& end = table.find("end_time")->value.place;
+  if (!(value.start_time < value.end_time)) {
+    diagnostics.add(end, fmt::format("[run] end_time = {} is not behind start_time = {}; expected a later time",
+                                     write_real(value.end_time), write_real(value.start_time)));
+    return;
+  }
+  const double latest = std::max(std::abs(value.start_time), std::abs(value.end_time));
+  if (is_given(given, "dt") && !(latest - value.dt < latest))
+    diagnostics.add(table.find("dt")->value.place,
+                    fmt::format("[run] dt = {} is lost beside the time {}: adding it changes nothing in double "
+                                "precision; take longer steps",
+                                write_real(value.dt), write_real(latest)));
+}
+
+void read_run(CaseReader& reader)
+{
+  Case& value = reader.value;
+  const Node* node = reader.table("run");
+  if (node == nullptr) {
+    if (reader.root.table()->find("run") == nullptr)
+      reader.diagnostics.add({}, "there is no [run]; add the table with name, end_time and dt");
+    return;
+  }
+  std::vector<ParameterValue> given;
+  const auto run = read_options<RunOptions>(*node, "[run]", reader.diagnostics, given);
+  value.name = run.name;
+  value.start_time = run.start_time;
+  value.end_time = run.end_time;
+  value.dt = run.dt;
+  value.call_deadline = run.call_deadline;
+  value.start_deadline = run.start_deadline;
+  value.on_failure = run.on_failure;
+  const Table& table = *node->table();
+  if (is_given(given, "name") && !is_run_name(run.name)) {
+    const Node& name = table.find("name")->value;
+    reader.diagnostics.add(name.place, fmt::format("[run] name = {} is no run name; expected 1 to 64 letters, digits, "
+                                                   "'.', '_' or '-', and not dots alone",
+                                                   write_value(name)));
+  }
+  check_times(value, table, given, reader.diagnostics);
+}
+
+/// A dead module can be replaced only if its memory did not die with it.
+void check_respawn(CaseReader& reader)
+{
+  if (reader.value.on_failure != "respawn") return;
+  std::vector<std::string> inline_ones;
+  for (const auto& module : reader.value.modules)
+    if (!module.is_process) inline_ones.push_back("[" + module.instance + "]");
+  if (inline_ones.empty()) return;
+  reader.diagnostics.add(reader.table("run")->table()->find("on_failure")->value.place,
+                         fmt::format("[run] on_failure = \"respawn\" needs every module in a process of its own, and {} "
+                                     "{} inline{}",
+                                     fmt::join(inline_ones, ", "), inline_ones.size() == 1 ? "is" : "are",
+                                     reader.options.all_inline ? " by --inline; leave that flag out"
+                                                               : "; write process = true there, or give --processes"));
+}
+
+void read_output(CaseReader& reader)
+{
+  const Node* node = reader.table("output");
+  if (node == nullptr) return;
+  std::vector<ParameterValue> given;
+  const auto output = read_options<OutputOptions>(*node, "[output]", reader.diagnostics, given);
+  reader.value.output_every = output.every;
+  reader.value.has_history = output.history;
+}
+
+void read_expectations(CaseReader& reader)
+{
+  const auto* entry = reader.root.table()->find("expect");
+  if (entry == nullptr) return;
+  const List* list = entry->value.list();
+  const bool are_tables = list != nullptr && std::all_of(list->begin(), list->end(), [](const Node& element) {
+                            return element.table() != nullptr;
+                          });
+  if (!are_tables) {
+    reader.diagnostics.add(entry->place, "'expect' is no list of tables; write [[expect]] for each expected number");
+    return;
+  }
+  for (const auto& node : *list) {
+    std::vector<ParameterValue> given;
+    const auto expect = read_options<ExpectOptions>(node, "[[expect]]", reader.diagnostics, given);
+    if (node.table()->find("amplitude") == nullptr && node.table()->find("frequency") == nullptr)
+      reader.diagnostics.add(node.place, "[[expect]] gives neither 'amplitude' nor 'frequency'; expected at least one "
+                                         "number to compare with");
+    reader.value.expectations.push_back({expect.quantity, expect.amplitude, expect.frequency, expect.source});
+  }
+}
+
+/// The document as it is run: --inline and --processes are overrides too.
+void overrule_process_keys(Node& root, const Case& value)
+{
+  for (const auto& module : value.modules) {
+    Table& table = *root.table()->find(module.instance)->value.table();
+    if (Entry* entry = table.find("process")) entry->value.value = module.is_process;
+    else if (module.is_process) table.entries.push_back({"process", {}, {{}, true}});
+  }
+}
+
+/// @returns "" and the text, or what is wrong
+std::string read_file(const std::string& file, std::string& text)
+{
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) return "is a folder; expected a case file in TOML";
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return fmt::format("cannot be read: {}", std::strerror(errno));
+  if (const auto bytes = std::filesystem::file_size(file, error); !error && bytes > max_case_bytes)
+    return fmt::format("has {} bytes; a case file has at most {}", bytes, max_case_bytes);
+  text.assign(std::istreambuf_iterator<char>(in), {});
+  return in.bad() ? fmt::format("cannot be read: {}", std::strerror(errno)) : "";
+}
+
+void read_tables(CaseReader& reader)
+{
+  read_run(reader);
+  const bool are_modules_known = read_modules(reader);
+  const bool is_interface_sound = read_coupling(reader, are_modules_known);
+  const bool is_driver_sound = read_driver(reader);
+  check_respawn(reader);
+  read_output(reader);
+  read_expectations(reader);
+  if (are_modules_known && is_interface_sound && is_driver_sound) check_scheme(reader);
+}
+
+} // namespace
+
+const Node* CaseReader::table(const std::string& name) const
+{
+  const auto* entry = root.table()->find(name);
+  if (entry == nullptr) return nullptr;
+  return entry->value.table() == nullptr ? nullptr : &entry->value;
+}
+
+const ModuleCase* CaseReader::module(std::string_view instance) const
+{
+  const auto found = std::find_if(value.modules.begin(), value.modules.end(),
+                                  [&](const ModuleCase& m) { return m.instance == instance; });
+  return found == value.modules.end() ? nullptr : &*found;
+}
+
+} // namespace mullion::config
+
+namespace mullion {
+
+CaseResult read_case(const std::string& file, const CaseOptions& options)
+{
+  using namespace config;
+  CaseResult result;
+  result.value.file = file;
+  if (options.all_inline && options.all_processes) {
+    result.diagnostics.push_back({"--inline --processes", "the two flags contradict each other; give one"});
+    return result;
+  }
+  std::string text;
+  if (const auto problem = read_file(file, text); !problem.empty()) {
+    result.diagnostics.push_back({file, problem});
+    return result;
+  }
+  Diagnostics diagnostics;
+  auto parsed = parse_toml(text);
+  if (const auto* error = std::get_if<SyntaxError>(&parsed)) {
+    diagnostics.add(error->place, error->message);
+    result.diagnostics = diagnostics.sorted(file);
+    return result;
+  }
+  Node& root = std::get<Node>(parsed);
+  apply_overrides(root, options.overrides, diagnostics);
+  for (const auto& name : framework_tables) // what stands in a table's place; [[expect]] is a list
+    if (const auto* entry = root.table()->find(name);
+        entry != nullptr && name != "expect" && entry->value.table() == nullptr)
+      diagnostics.add(entry->place, fmt::format("'{0}' is no table here; write [{0}], once", name));
+
+  plugin::Catalogue catalogue;
+  CaseReader reader{root, options, catalogue, diagnostics, result.value};
+  read_tables(reader);
+  if (options.all_inline || options.all_processes) overrule_process_keys(root, result.value);
+  result.value.text = write_toml(root);
+  result.diagnostics = diagnostics.sorted(file);
+  return result;
+}
+
+} // namespace mullion

@@ -1,0 +1,147 @@
+// The live coupling: modules (inline or in hosts), their windows, the companions and driver/state, and the calls
+// between them. The driver's proxies are thin handles into this; the run loop is in simulation.cpp.
+//
+// Writes: the control object, companions, driver/state, and the windows of inline modules. When a host dies, the
+// call at hand throws an Error that names it; when this process dies, the hosts go with it.
+#pragma once
+
+#include "module/module_runtime.hpp"
+#include "plugin/catalogue.hpp"
+#include "process/supervisor.hpp"
+#include "run/timings.hpp"
+#include "shm/control.hpp"
+#include "shm/window_map.hpp"
+
+#include <mullion/app/case_file.hpp>
+#include <mullion/coupling/driver.hpp>
+
+#include <exception>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace mullion::run {
+
+struct SessionOptions {
+  bool is_audited = false;   ///< poison what a step must write (--replay)
+  bool has_deadlines = true; ///< false: --no-deadline
+};
+
+/// Where a field lives: ids of the control object and the window.
+struct FieldAddress {
+  std::uint32_t window, field;
+};
+
+class Session {
+public:
+  Session(const Case& the_case, plugin::Catalogue& catalogue, shm::Control& control, process::Supervisor& supervisor,
+          SessionOptions options);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  // ---- the run loop's side (setup.cpp, session.cpp) ----
+  /// Fresh start: spawn, define, wire, attach, start; all levels then hold the initial state.
+  void start_fresh();
+  /// Begin a coupling step from the last commit: forget what was written, arm driver/state.
+  void begin_attempt();
+  void run_driver(const TimeStep& step);
+  /// All that was written becomes committed.
+  void commit(const TimeStep& step);
+  /// Fresh processes for all modules in hosts, a new driver object; state comes from the windows.
+  void renew();
+  /// Ask the hosts to quit; kills what does not.
+  void shut_down();
+
+  // ---- the driver's side ----
+  void begin(std::uint32_t module, shm::Operation operation, std::uint32_t function, const TimeStep& step,
+             double stamp, const double* arguments = nullptr, std::uint32_t n_arguments = 0);
+  void await(std::uint32_t module);
+  [[nodiscard]] double result(std::uint32_t module) const { return modules_[module].result; }
+  [[nodiscard]] std::uint32_t find_module(const std::string& instance) const;
+  [[nodiscard]] std::uint32_t find_function(std::uint32_t module, const std::string& name, std::uint32_t n_arguments,
+                                            std::uint32_t n_results) const;
+  [[nodiscard]] FieldAddress find_field(const std::string& port, bool is_received, std::uint32_t pane);
+  [[nodiscard]] FieldAddress find_state(const std::string& name);
+  [[nodiscard]] ConstArray read(FieldAddress at, int level);
+  [[nodiscard]] Array write(FieldAddress at);
+  void stamp(FieldAddress at, double time, std::uint32_t kind);
+  void exchange(FieldAddress at); ///< somebody else reads it: check it for finite values
+
+  // ---- onlookers within the orchestrator ----
+  [[nodiscard]] shm::Control& control() { return control_; }
+  [[nodiscard]] shm::WindowMap& windows() { return windows_; }
+  [[nodiscard]] const Case& the_case() const { return case_; }
+  [[nodiscard]] const std::vector<CallTiming>& timings(std::uint32_t module) const { return modules_[module].timings; }
+  /// Text for a post-mortem: the last lines of every host that died.
+  [[nodiscard]] std::string post_mortem() const;
+  [[nodiscard]] bool needs_constant_step() const { return needs_constant_step_; }
+  /// The windows that this attempt wrote, in the order of their first writing: who differs first is the culprit.
+  [[nodiscard]] const std::vector<std::uint32_t>& write_order() const { return write_order_; }
+
+private:
+  struct Module {
+    const ModuleCase* config = nullptr;
+    const mullion_module* entries = nullptr;
+    std::unique_ptr<module::ModuleRuntime> runtime;            ///< inline
+    std::shared_ptr<process::Host> host;                       ///< in a process
+    std::vector<std::uint32_t> windows;                        ///< its own
+    std::vector<std::vector<std::uint32_t>> function_windows;  ///< per function
+    std::uint32_t conflicts = 0; ///< modules that read its windows, or whose windows it reads, in place
+    bool in_flight = false;
+    shm::Operation operation = shm::Operation::none;
+    std::uint32_t function = 0;
+    TimeStep step;
+    double stamp = 0.0, result = 0.0;
+    Clock::time_point begun;
+    std::exception_ptr inline_error;
+    std::vector<module::ModuleRuntime::Defined> defined; ///< inline, between define and adoption
+    std::int64_t inline_work_ns = 0;
+    std::vector<CallTiming> timings; ///< step, then the functions in their order
+    std::set<std::uint32_t> poisoned; ///< windows, in this attempt
+  };
+
+  // setup.cpp
+  void describe_modules();
+  void spawn(std::uint32_t module);
+  void call_all(shm::Operation operation, const TimeStep& step);
+  void call(std::uint32_t module, shm::Operation operation, const TimeStep& step);
+  void adopt_windows(std::uint32_t module);
+  std::uint32_t register_window(const std::string& name, shm::Owner owner, std::uint32_t module,
+                                shm::Descriptor object, std::uint64_t bytes, std::uint32_t n_slots);
+  void make_window(const shm::WindowPlan& plan, std::uint32_t module);
+  void make_companions();
+  void make_driver_state();
+  void make_driver();
+  void find_conflicts();
+  Wiring make_wiring() const;
+
+  // session.cpp
+  void mark_written(std::uint32_t window, const mullion_stamp& stamp);
+  [[nodiscard]] const std::vector<std::uint32_t>& windows_written(const Module& module) const;
+  void refuse_conflicts(std::uint32_t module) const;
+  void await_host(Module& module);
+  void fail(const Module& module, Errc code, const std::string& what) const;
+  [[nodiscard]] std::string who(const Module& module) const;
+  [[nodiscard]] std::string where(const Module& module) const;
+
+  const Case& case_;
+  plugin::Catalogue& catalogue_;
+  shm::Control& control_;
+  process::Supervisor& supervisor_;
+  SessionOptions options_;
+  shm::WindowMap windows_;
+  std::vector<Module> modules_;
+  std::vector<shm::Descriptor> objects_; ///< of all windows: they live as long as this
+  std::optional<Wiring> wiring_;
+  std::unique_ptr<Driver> driver_;
+  std::uint32_t state_window_ = shm::no_window;
+  std::vector<std::uint32_t> write_order_;
+  std::uint32_t n_in_flight_ = 0;
+  bool needs_constant_step_ = false;
+  bool is_running_ = false; ///< steps, rather than the start-up, whose deadline is longer
+};
+
+} // namespace mullion::run

@@ -1,0 +1,152 @@
+// One run: case, session, the loop over coupling steps with its audits, results, and the end, good or bad.
+#include <mullion/app/simulation.hpp>
+
+#include "io/atomic_file.hpp"
+#include "log/console.hpp"
+#include "process/guard.hpp"
+#include "process/run_socket.hpp"
+#include "run/audit.hpp"
+#include "run/progress.hpp"
+#include "run/recorder.hpp"
+#include "run/session.hpp"
+#include "run/summary.hpp"
+#include "run/time_plan.hpp"
+
+#include <mullion/sdk/error.hpp>
+
+#include <cstdio>
+#include <filesystem>
+#include <unistd.h>
+
+namespace mullion {
+namespace {
+
+namespace fs = std::filesystem;
+
+void print_error(const std::string& text)
+{
+  log::show_progress("");
+  std::fprintf(stderr, "mullion: error: %s\n", text.c_str());
+}
+
+/// 2 where the command or the case is wrong, 1 where the run failed.
+int exit_code_of(Errc code) { return code == Errc::config || code == Errc::plugin ? 2 : 1; }
+
+std::string answer(shm::Control& control, process::Supervisor& supervisor, const std::string& line)
+{
+  if (line == "status")
+    return fmt::format(R"({{"name":"{}","pid":{},"step":{},"steps":{},"time":{}}})", control.run_name, control.guard_pid,
+                       control.step.load(), control.n_steps.load(), control.time.load());
+  if (line == "stop") {
+    supervisor.request_stop("mullion stop");
+    return "ok";
+  }
+  return fmt::format("error: unknown command '{}'", line);
+}
+
+/// The steps of the run. @return why it ended early, or ""
+std::string run_steps(const RunOptions& options, run::Session& session, process::Supervisor& supervisor,
+                      const run::TimePlan& plan, run::Recorder& recorder)
+{
+  auto& control = session.control();
+  run::Progress progress(plan.n_steps());
+  run::Audit audit;
+  const auto attempt = [&](const TimeStep& step) {
+    session.begin_attempt();
+    session.run_driver(step);
+  };
+  for (std::int64_t n = control.step + 1; n <= plan.n_steps(); ++n) {
+    const auto step = plan.step(n);
+    attempt(step);
+    if (options.replay) {
+      audit.keep(session);
+      attempt(step);
+      audit.compare(session, step, "the same instances (--replay)");
+    }
+    if (options.amnesia > 0 && n % options.amnesia == 0) {
+      audit.keep(session);
+      session.renew();
+      attempt(step);
+      audit.compare(session, step, "fresh processes and a new driver (--amnesia)");
+    }
+    session.commit(step);
+    recorder.record(step);
+    progress.show(step);
+    if (supervisor.is_stopping() && n < plan.n_steps()) return supervisor.stop_reason();
+  }
+  return "";
+}
+
+int orchestrate(const RunOptions& options, shm::Control& control, int control_fd)
+{
+  auto the_case = read_case(options.case_file, options.case_options);
+  if (!the_case.diagnostics.empty()) {
+    for (const auto& d : the_case.diagnostics) std::fprintf(stderr, "%s: error: %s\n", d.place.c_str(), d.message.c_str());
+    return 2;
+  }
+  const Case& c = the_case.value;
+  shm::copy_text(control.run_name, sizeof control.run_name, c.name, "run name");
+  process::RunSocket socket(c.name, control.guard_pid);
+
+  const fs::path out = options.out.empty() ? fs::path("out") / c.name : fs::path(options.out);
+  process::Supervisor supervisor(control, control_fd);
+  plugin::Catalogue catalogue;
+  run::Recorder recorder(c, out, control);
+  const auto end = [&](const std::string& outcome, const std::string& error) { recorder.finish(outcome, error); };
+  try {
+    run::Session session(c, catalogue, control, supervisor, {options.replay, options.has_deadlines});
+    try {
+      supervisor.serve(socket, [&](const std::string& line) { return answer(control, supervisor, line); });
+      session.start_fresh();
+      const run::TimePlan plan(c, session.needs_constant_step());
+      control.n_steps = plan.n_steps();
+      control.state = shm::RunState::running;
+      recorder.begin(session);
+      log::info("run", "{}: {} steps of {} s, results in {}", c.name, plan.n_steps(), c.dt, out.string());
+      const auto stopped_by = run_steps(options, session, supervisor, plan, recorder);
+      log::show_progress("");
+      session.shut_down();
+      supervisor.unserve();
+      end(stopped_by.empty() ? "completed" : "stopped", stopped_by);
+      std::fputs(run::summary(recorder, stopped_by).c_str(), stdout);
+      return 0;
+    } catch (const std::exception&) {
+      log::show_progress("");
+      supervisor.unserve();
+      if (const auto text = session.post_mortem(); !text.empty()) {
+        fs::create_directories(out);
+        io::write_file((out / "post-mortem.txt").string(), text);
+      }
+      throw;
+    }
+  } catch (const Error& error) {
+    end("failed", error.what());
+    throw;
+  } catch (const std::exception& error) {
+    end("failed", error.what());
+    throw;
+  }
+}
+
+} // namespace
+
+int run_case(const RunOptions& options)
+{
+  log::Level level{};
+  MULLION_REQUIRE(log::parse_level(options.log_level, level), Errc::config,
+                  "--log-level '{}': expected debug, info, warning, error or off", options.log_level);
+  return process::run_guarded([&](shm::Control& control, int control_fd) {
+    try {
+      log::initialise(level, ::isatty(STDERR_FILENO) != 0);
+      return orchestrate(options, control, control_fd);
+    } catch (const Error& error) {
+      print_error(error.what());
+      return exit_code_of(error.code());
+    } catch (const std::exception& error) {
+      print_error(error.what());
+      return 1;
+    }
+  });
+}
+
+} // namespace mullion

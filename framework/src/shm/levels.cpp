@@ -1,0 +1,121 @@
+#include "shm/levels.hpp"
+
+#include <mullion/sdk/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace mullion::shm {
+namespace {
+
+template <class Body> void for_each_level_field(const WindowView& window, Body&& body)
+{
+  for (const auto& field : window.fields())
+    if (static_cast<Storage>(field.storage) == Storage::level) body(field);
+}
+
+bool is_carried(const FieldRecord& field)
+{
+  return field.role == MULLION_STATE && field.carry == MULLION_COPY;
+}
+
+} // namespace
+
+void initialise_levels(Control& control, std::uint32_t window, std::uint32_t n_slots, double t0, double dt)
+{
+  for (auto& table : control.levels) {
+    auto& entry = table.windows[window];
+    entry.working_slot = 0;
+    entry.n_slots = n_slots;
+    for (int k = 1; k <= MULLION_MAX_LEVELS; ++k)
+      entry.committed[k - 1] = {t0 - (k - 1) * dt, 1 - k, 0, MULLION_INSTANT};
+  }
+  control.working[window] = {};
+}
+
+void commit(Control& control)
+{
+  const auto epoch = control.epoch.load(std::memory_order_relaxed);
+  const auto& now = control.table(epoch);
+  auto& next = control.levels[(epoch + 1) & 1];
+  for (std::uint32_t w = 0; w < control.n_windows; ++w) {
+    auto& entry = next.windows[w];
+    entry = now.windows[w];
+    auto& working = control.working[w];
+    if (working.is_written == 0) continue;
+    entry.working_slot = (entry.working_slot + 1) % entry.n_slots;
+    const auto kept = std::min<std::uint32_t>(entry.n_slots, MULLION_MAX_LEVELS);
+    for (std::uint32_t k = kept - 1; k > 0; --k) entry.committed[k] = entry.committed[k - 1];
+    entry.committed[0] = working.stamp;
+  }
+  control.epoch.store(epoch + 1, std::memory_order_release);
+  roll_back(control);
+}
+
+void roll_back(Control& control)
+{
+  for (std::uint32_t w = 0; w < control.n_windows; ++w) control.working[w].is_written = 0;
+}
+
+void arm(const WindowView& window, const LevelEntry& levels)
+{
+  const auto to = slot_of(levels, 0), from = slot_of(levels, 1);
+  for_each_level_field(window, [&](const FieldRecord& field) {
+    if (is_carried(field)) std::memcpy(window.data(field, to), window.data(field, from), field_bytes(field));
+  });
+}
+
+void poison_working(const WindowView& window, const LevelEntry& levels)
+{
+  for_each_level_field(window, [&](const FieldRecord& field) {
+    if (is_carried(field) || field.scalar != MULLION_F64) return;
+    auto* bits = reinterpret_cast<std::uint64_t*>(window.data(field, slot_of(levels, 0)));
+    std::fill_n(bits, field_bytes(field) / sizeof *bits, poison_bits);
+  });
+}
+
+std::optional<std::string> find_poison(const WindowView& window, const LevelEntry& levels)
+{
+  std::optional<std::string> found;
+  for_each_level_field(window, [&](const FieldRecord& field) {
+    if (found || is_carried(field) || field.scalar != MULLION_F64) return;
+    const auto* bits = reinterpret_cast<const std::uint64_t*>(window.data(field, slot_of(levels, 0)));
+    const auto n = field_bytes(field) / sizeof *bits;
+    for (std::uint64_t i = 0; i < n; ++i)
+      if (bits[i] == poison_bits) {
+        found = fmt::format("{}[{}, {}]", field.name, i % field.components, i / field.components);
+        return;
+      }
+  });
+  return found;
+}
+
+void seal(const WindowView& window, const LevelEntry& levels)
+{
+  const auto working = slot_of(levels, 0);
+  for (std::uint32_t s = 0; s < levels.n_slots; ++s)
+    if (s != working) std::memcpy(window.slot(s), window.slot(working), window.header().slot_bytes);
+}
+
+std::int64_t first_not_finite(const double* values, std::int64_t n)
+{
+  // x * 0 is 0 for finite x and NaN otherwise; integer tests on the exponent vectorise just as well and don't
+  // depend on floating-point modes.
+  constexpr std::uint64_t exponent = 0x7ff0'0000'0000'0000ull;
+  constexpr std::int64_t chunk = 512;
+  for (std::int64_t start = 0; start < n; start += chunk) {
+    const auto end = std::min(n, start + chunk);
+    std::uint64_t bad = 0;
+    for (std::int64_t i = start; i < end; ++i) {
+      const auto e = std::bit_cast<std::uint64_t>(values[i]) & exponent;
+      bad |= (e + (1ull << 52)) & (1ull << 63); // carries into the top bit only if all exponent bits are set
+    }
+    if (bad == 0) continue;
+    for (std::int64_t i = start; i < end; ++i)
+      if (!std::isfinite(values[i])) return i;
+  }
+  return -1;
+}
+
+} // namespace mullion::shm

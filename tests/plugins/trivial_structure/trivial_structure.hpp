@@ -1,0 +1,33 @@
+// A structure without physics, the counterpart of trivial_fluid: velocity = 0.5 * traction + a small number that
+// depends on the entry. The velocity is state that every step writes whole.
+#pragma once
+
+#include <mullion/sdk/module.hpp>
+
+namespace mullion::test {
+
+class TrivialStructure final : public Module {
+public:
+  struct Options {
+    int nodes = 10;
+    static constexpr auto table()
+    {
+      return std::tuple{parameter("nodes", &Options::nodes, "1", "nodes of the wet surface", at_least(1))};
+    }
+  };
+  explicit TrivialStructure(const Options& options) : options_(options) {}
+
+  static std::vector<FieldSpec> fields();
+  static std::vector<InputSpec> inputs();
+
+  void define(const TimeStep& initial) override;
+  void attach() override;
+  void step(const TimeStep& step) override;
+
+private:
+  Options options_;
+  Field velocity_;
+  Input traction_;
+};
+
+} // namespace mullion::test
