@@ -151,7 +151,7 @@ TEST_CASE("the wall's pressure gradient converges with first order, with the err
 
 TEST_CASE("Sod's shock tube with van Albada's limiter has the exact plateaus and no overshoot")
 {
-  // Exact: p* = 0.30313, u* = 0.92745, rho*_L = 0.42632, rho*_R = 0.26557 (Toro 2009, Table 4.3,
+  // Exact: p* = 0.30313, u* = 0.92745, rho*_L = 0.42632, rho*_R = 0.26557 (Toro 2009, section 4.3,
   // test 1). Diaphragm at 0.5, t = 0.2: contact at 0.6855, shock at 0.8504, tail of the expansion
   // at 0.4859.
   const std::size_t n = 200;

@@ -76,6 +76,8 @@ const Library& Catalogue::open(const std::string& name)
 {
   for (const auto& [known, library] : open_)
     if (known == name) return *library;
+  MULLION_REQUIRE(name.find('/') == std::string::npos, Errc::plugin,
+                  "'{}' is a path; a plug-in is named, and its folder put on MULLION_PLUGIN_PATH", name);
   const auto path = find(name);
   MULLION_REQUIRE(!path.empty(), Errc::plugin,
                   "there is no plug-in '{}'{} (searched {}; MULLION_PLUGIN_PATH adds folders)", name,

@@ -5,6 +5,7 @@
 
 #include "ale_step.hpp"
 #include "initial_states.hpp"
+#include "wall.hpp"
 
 #include <mullion/sdk/module.hpp>
 

@@ -14,7 +14,7 @@ namespace mullion::euler_1d {
 ///     rho_R (S_R - u_R)) rho_K* = rho_K (S_K - u_K) / (S_K - S_*),  p* = p_K + rho_K (S_K -
 ///     u_K)(S_* - u_K)
 ///
-/// Toro 2009, Eqs. (10.37)-(10.39), (10.73); wave speeds of Batten et al. 1997. For equal states it
+/// Toro 2009, section 10.4; wave speeds of Batten et al. 1997. For equal states it
 /// is the physical flux F(U) - w U, and a contact that moves with the face lets no mass through.
 ///
 /// @param left, right  states on the two sides of the face

@@ -1,0 +1,69 @@
+// What a run leaves behind: history.csv, the result files, run.json, case.toml. Reads committed levels only.
+#pragma once
+
+#include "io/history_writer.hpp"
+#include "io/results_writer.hpp"
+#include "io/run_record.hpp"
+#include "run/session.hpp"
+#include "run/timings.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace mullion::run {
+
+/// A column of history.csv that the summary looks at again.
+struct Series {
+  std::string quantity;
+  std::vector<double> times, values;
+};
+
+class Recorder {
+public:
+  /// Makes the folder, writes case.toml and run.json ("running").
+  Recorder(const Case& the_case, std::filesystem::path out, shm::Control& control);
+
+  /// The windows exist: history and result files start, with the initial state.
+  void begin(Session& session);
+  /// After a commit.
+  void record(const TimeStep& step);
+  /// Close all files, complete run.json. Never throws: a failure is logged.
+  void finish(const std::string& outcome, const std::string& error) noexcept;
+
+  [[nodiscard]] const Case& the_case() const { return case_; }
+  [[nodiscard]] const std::filesystem::path& out() const { return out_; }
+  [[nodiscard]] const io::Attempt& attempt() const { return record_.attempts.back(); }
+  [[nodiscard]] const std::vector<Series>& series() const { return series_; }
+
+private:
+  enum class Statistic { value, mean, largest };
+  struct Column {
+    std::string name;
+    FieldAddress at;
+    int component;
+    Statistic statistic;
+  };
+
+  void choose_columns();
+  [[nodiscard]] double measure(const Column& column) const;
+  [[nodiscard]] std::vector<io::WindowData> snapshot() const;
+  void collect_timings();
+
+  const Case& case_;
+  std::filesystem::path out_;
+  shm::Control& control_;
+  Session* session_ = nullptr;
+  io::RunRecord record_;
+  std::vector<Column> columns_;
+  std::vector<double> row_;
+  std::vector<Series> series_;
+  std::vector<std::size_t> series_columns_;
+  std::unique_ptr<io::HistoryWriter> history_;
+  std::unique_ptr<io::ResultsWriter> results_;
+  Clock::time_point begun_;
+  std::int64_t output_ns_ = 0; ///< spent in record()
+};
+
+} // namespace mullion::run
