@@ -58,8 +58,9 @@ int dispatch(const std::string& name, const cli::Arguments& arguments)
     std::vector<std::string> known;
     for (const auto& c : commands) known.emplace_back(c.name);
     const bool is_option = name.starts_with('-');
-    return fail(is_option ? fmt::format("unknown option '{}'; options stand behind the command (see mullion --help)", name)
-                          : fmt::format("unknown command '{}'{} (see mullion --help)", name, did_you_mean(name, known)),
+    return fail(is_option
+                    ? fmt::format("unknown option '{}'; options stand behind the command (see mullion --help)", name)
+                    : fmt::format("unknown command '{}'{} (see mullion --help)", name, did_you_mean(name, known)),
                 cli::wrong_usage);
   }
   try {

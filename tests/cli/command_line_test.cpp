@@ -97,17 +97,16 @@ TEST_CASE("a case that is right shows who feeds whom")
 
   CHECK(result.exit_code == 0);
   CHECK(result.err == "");
-  CHECK(result.out ==
-        "good_case.toml: ok\n"
-        "\n"
-        "run          good-case: 0 s to 0.5 s in 50 steps of 0.01 s; on failure: stop\n"
-        "modules      fluid      fluid        trivial_fluid      process\n"
-        "             structure  structure    trivial_structure  inline\n"
-        "driver       exchange\n"
-        "interface    fluid.wall | structure.wet, reference pressure 0 Pa\n"
-        "connections  structure.wet.velocity -> fluid.wall.velocity  (bound, constant)\n"
-        "             fluid.wall.traction    -> structure.wet.traction  (bound, constant)\n"
-        "output       a result file every 10 steps, history.csv\n");
+  CHECK(result.out == "good_case.toml: ok\n"
+                      "\n"
+                      "run          good-case: 0 s to 0.5 s in 50 steps of 0.01 s; on failure: stop\n"
+                      "modules      fluid      fluid        trivial_fluid      process\n"
+                      "             structure  structure    trivial_structure  inline\n"
+                      "driver       exchange\n"
+                      "interface    fluid.wall | structure.wet, reference pressure 0 Pa\n"
+                      "connections  structure.wet.velocity -> fluid.wall.velocity  (bound, constant)\n"
+                      "             fluid.wall.traction    -> structure.wet.traction  (bound, constant)\n"
+                      "output       a result file every 10 steps, history.csv\n");
 }
 
 TEST_CASE("modules lists what can be used and says why a library was refused")
@@ -118,8 +117,9 @@ TEST_CASE("modules lists what can be used and says why a library was refused")
   CHECK(has(result.out, "fluid      trivial_fluid          0.1.0"));
   CHECK(has(result.out, "driver     exchange               0.1.0"));
   CHECK(!has(result.out, "wrong_abi"));
-  for (const char* refused : {"wrong_abi.so: built for plug-in ABI 999", "not_a_plugin.so: not a Mullion plug-in",
-                              "wrong_build.so: compiled against another build", "wrong_name.so: the library calls itself"})
+  for (const char* refused :
+       {"wrong_abi.so: built for plug-in ABI 999", "not_a_plugin.so: not a Mullion plug-in",
+        "wrong_build.so: compiled against another build", "wrong_name.so: the library calls itself"})
     CHECK(has(result.err, refused));
 }
 

@@ -100,7 +100,8 @@ Process::~Process()
 {
   if (!is_reaped_) {
     kill_group();
-    while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {}
+    while (waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+    }
   }
   for (const int fd : {pidfd_, out_, err_})
     if (fd >= 0) close(fd);
@@ -137,7 +138,8 @@ ProcessResult Process::wait()
   }
   kill_group(); // after a timeout the process; in any case what it left behind
   int status = 0;
-  while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {}
+  while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  }
   is_reaped_ = true;
   if (WIFEXITED(status)) result_.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) result_.signal = WTERMSIG(status);

@@ -37,8 +37,8 @@ std::optional<po::variables_map> parse_arguments(const CommandLine& command, con
   } catch (const po::unknown_option& error) {
     std::vector<std::string> known;
     for (const auto& option : visible.options()) known.push_back("--" + option->long_name());
-    throw UsageError(fmt::format("unknown option '{}'{}", error.get_option_name(),
-                                 did_you_mean(error.get_option_name(), known)));
+    throw UsageError(
+        fmt::format("unknown option '{}'{}", error.get_option_name(), did_you_mean(error.get_option_name(), known)));
   } catch (const po::too_many_positional_options_error&) {
     throw UsageError(fmt::format("too many arguments; expected {}", command.usage));
   } catch (const po::error& error) {

@@ -12,8 +12,8 @@
 namespace mullion::cli {
 
 struct CommandLine {
-  std::string usage;      ///< "mullion check CASE [options]"
-  std::string summary;    ///< one sentence
+  std::string usage;   ///< "mullion check CASE [options]"
+  std::string summary; ///< one sentence
   boost::program_options::options_description options;
   std::string positional; ///< the option that takes what stands without a dash; "": nothing may
   int n_positional = 1;   ///< at most; -1: any number

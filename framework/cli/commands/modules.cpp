@@ -40,8 +40,7 @@ void print_fields(const char* heading, const char* role, const std::vector<Field
 {
   if (fields.empty()) return;
   std::vector<Row> rows;
-  for (const auto& f : fields)
-    rows.push_back({f.name, f.unit, f.location, f.components, f.role, f.nature, f.meaning});
+  for (const auto& f : fields) rows.push_back({f.name, f.unit, f.location, f.components, f.role, f.nature, f.meaning});
   fmt::print("\n{}\n", heading);
   print_table("  ", {"name", "unit", "on", "components", role, "nature", "meaning"}, std::move(rows));
 }

@@ -6,11 +6,13 @@
 #include "config/parameter_table.hpp"
 #include "config/toml_reader.hpp"
 #include "config/toml_writer.hpp"
+#include "run/time_plan.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -27,17 +29,16 @@ struct RunOptions {
   double start_time = 0.0, end_time = 0.0, dt = 0.0, call_deadline = 300.0, start_deadline = 600.0;
   static constexpr auto table()
   {
-    return std::tuple{
-        required_parameter("name", &RunOptions::name, "", "name of the run"),
-        parameter("on_failure", &RunOptions::on_failure, "", "what follows the death of a module's process",
-                  one_of("stop", "respawn")),
-        parameter("start_time", &RunOptions::start_time, "s", "begin of the run"),
-        required_parameter("end_time", &RunOptions::end_time, "s", "end of the run"),
-        required_parameter("dt", &RunOptions::dt, "s", "coupling step", above(0.0)),
-        parameter("call_deadline", &RunOptions::call_deadline, "s", "longest time of one call of a module, 0: no limit",
-                  at_least(0.0)),
-        parameter("start_deadline", &RunOptions::start_deadline, "s", "longest time of a module's start, 0: no limit",
-                  at_least(0.0))};
+    return std::tuple{required_parameter("name", &RunOptions::name, "", "name of the run"),
+                      parameter("on_failure", &RunOptions::on_failure, "",
+                                "what follows the death of a module's process", one_of("stop", "respawn")),
+                      parameter("start_time", &RunOptions::start_time, "s", "begin of the run"),
+                      required_parameter("end_time", &RunOptions::end_time, "s", "end of the run"),
+                      required_parameter("dt", &RunOptions::dt, "s", "coupling step", above(0.0)),
+                      parameter("call_deadline", &RunOptions::call_deadline, "s",
+                                "longest time of one call of a module, 0: no limit", at_least(0.0)),
+                      parameter("start_deadline", &RunOptions::start_deadline, "s",
+                                "longest time of a module's start, 0: no limit", at_least(0.0))};
   }
 };
 
@@ -57,12 +58,11 @@ struct ExpectOptions {
   double amplitude = 0.0, frequency = 0.0;
   static constexpr auto table()
   {
-    return std::tuple{
-        required_parameter("quantity", &ExpectOptions::quantity, "", "a column of history.csv"),
-        required_parameter("source", &ExpectOptions::source, "", "where the numbers come from"),
-        parameter("amplitude", &ExpectOptions::amplitude, "", "half of maximum minus minimum, in the quantity's unit",
-                  above(0.0)),
-        parameter("frequency", &ExpectOptions::frequency, "Hz", "dominant frequency", above(0.0))};
+    return std::tuple{required_parameter("quantity", &ExpectOptions::quantity, "", "a column of history.csv"),
+                      required_parameter("source", &ExpectOptions::source, "", "where the numbers come from"),
+                      parameter("amplitude", &ExpectOptions::amplitude, "",
+                                "half of maximum minus minimum, in the quantity's unit", above(0.0)),
+                      parameter("frequency", &ExpectOptions::frequency, "Hz", "dominant frequency", above(0.0))};
   }
 };
 
@@ -91,32 +91,41 @@ bool is_run_name(const std::string& name)
          name.find_first_not_of('.') != std::string::npos;
 }
 
-void check_times(const Case& value, const Table& table, const std::vector<ParameterValue>& given,
+/// @returns are start, end and step such that steps can be counted?
+bool check_times(const Case& value, const Table& table, const std::vector<ParameterValue>& given,
                  Diagnostics& diagnostics)
 {
-  if (!is_given(given, "end_time")) return;
-  const Place& end = table.find("end_time")->value.place;
-  if (!(value.start_time < value.end_time)) {
-    diagnostics.add(end, fmt::format("[run] end_time = {} is not behind start_time = {}; expected a later time",
-                                     write_real(value.end_time), write_real(value.start_time)));
-    return;
-  }
+  if (!is_given(given, "end_time")) return false;
+  const auto wrong = [&](const char* key, const std::string& message) {
+    diagnostics.add(table.find(key)->value.place, message);
+    return false;
+  };
+  if (!(value.start_time < value.end_time))
+    return wrong("end_time", fmt::format("[run] end_time = {} is not behind start_time = {}; expected a later time",
+                                         write_real(value.end_time), write_real(value.start_time)));
+  if (!is_given(given, "dt")) return false;
   const double latest = std::max(std::abs(value.start_time), std::abs(value.end_time));
-  if (is_given(given, "dt") && !(latest - value.dt < latest))
-    diagnostics.add(table.find("dt")->value.place,
-                    fmt::format("[run] dt = {} is lost beside the time {}: adding it changes nothing in double "
-                                "precision; take longer steps",
-                                write_real(value.dt), write_real(latest)));
+  if (!(latest - value.dt < latest))
+    return wrong("dt", fmt::format("[run] dt = {} is lost beside the time {}: adding it changes nothing in double "
+                                   "precision; take longer steps",
+                                   write_real(value.dt), write_real(latest)));
+  try {
+    static_cast<void>(run::TimePlan(value, false));
+  } catch (const Error& error) {
+    return wrong("dt", error.what());
+  }
+  return true;
 }
 
-void read_run(CaseReader& reader)
+/// @returns are the times sound?
+bool read_run(CaseReader& reader)
 {
   Case& value = reader.value;
   const Node* node = reader.table("run");
   if (node == nullptr) {
     if (reader.root.table()->find("run") == nullptr)
       reader.diagnostics.add({}, "there is no [run]; add the table with name, end_time and dt");
-    return;
+    return false;
   }
   std::vector<ParameterValue> given;
   const auto run = read_options<RunOptions>(*node, "[run]", reader.diagnostics, given);
@@ -134,7 +143,7 @@ void read_run(CaseReader& reader)
                                                    "'.', '_' or '-', and not dots alone",
                                                    write_value(name)));
   }
-  check_times(value, table, given, reader.diagnostics);
+  return check_times(value, table, given, reader.diagnostics);
 }
 
 /// A dead module can be replaced only if its memory did not die with it.
@@ -145,12 +154,13 @@ void check_respawn(CaseReader& reader)
   for (const auto& module : reader.value.modules)
     if (!module.is_process) inline_ones.push_back("[" + module.instance + "]");
   if (inline_ones.empty()) return;
-  reader.diagnostics.add(reader.table("run")->table()->find("on_failure")->value.place,
-                         fmt::format("[run] on_failure = \"respawn\" needs every module in a process of its own, and {} "
-                                     "{} inline{}",
-                                     fmt::join(inline_ones, ", "), inline_ones.size() == 1 ? "is" : "are",
-                                     reader.options.all_inline ? " by --inline; leave that flag out"
-                                                               : "; write process = true there, or give --processes"));
+  reader.diagnostics.add(
+      reader.table("run")->table()->find("on_failure")->value.place,
+      fmt::format("[run] on_failure = \"respawn\" needs every module in a process of its own, and {} "
+                  "{} inline{}",
+                  fmt::join(inline_ones, ", "), inline_ones.size() == 1 ? "is" : "are",
+                  reader.options.all_inline ? " by --inline; leave that flag out"
+                                            : "; write process = true there, or give --processes"));
 }
 
 void read_output(CaseReader& reader)
@@ -210,14 +220,14 @@ std::string read_file(const std::string& file, std::string& text)
 
 void read_tables(CaseReader& reader)
 {
-  read_run(reader);
+  const bool are_times_sound = read_run(reader);
   const bool are_modules_known = read_modules(reader);
   const bool is_interface_sound = read_coupling(reader, are_modules_known);
   const bool is_driver_sound = read_driver(reader);
   check_respawn(reader);
   read_output(reader);
   read_expectations(reader);
-  if (are_modules_known && is_interface_sound && is_driver_sound) check_scheme(reader);
+  if (are_modules_known && is_interface_sound && is_driver_sound) check_scheme(reader, are_times_sound);
 }
 
 } // namespace

@@ -46,7 +46,7 @@ bool read_coupling(CaseReader& reader, bool are_modules_known);
 bool read_driver(CaseReader& reader);
 
 /// What the scheme connects, asked from the driver itself and checked. @pre the three above returned true
-void check_scheme(CaseReader& reader);
+void check_scheme(CaseReader& reader, bool are_times_sound);
 
 /// The plug-in of this name, or nothing and a diagnostic at `place`.
 const plugin::Library* open_plugin(CaseReader& reader, const std::string& name, const Place& place,

@@ -107,13 +107,17 @@ private:
   {
     return find(
         port, "receives", [](const mullion_module& plugin) { return std::span(plugin.inputs, plugin.n_inputs); },
-        [](const mullion_input_spec& s) { return Port{s.location, s.components, s.nature, MULLION_F64, s.unit}; });
+        [](const mullion_input_spec& s) {
+          return Port{s.location, s.components, s.nature, MULLION_F64, s.unit};
+        });
   }
   [[nodiscard]] Found find_field(const std::string& port)
   {
     return find(
         port, "has", [](const mullion_module& plugin) { return std::span(plugin.fields, plugin.n_fields); },
-        [](const mullion_field_spec& s) { return Port{s.location, s.components, s.nature, s.scalar, s.unit}; });
+        [](const mullion_field_spec& s) {
+          return Port{s.location, s.components, s.nature, s.scalar, s.unit};
+        });
   }
 
   void check_connection(const Connection& connection)
@@ -132,7 +136,8 @@ private:
   }
 
   void check_agreement(const Connection& connection, const Port& source, const Port& receiver)
-  {    const auto disagree = [&](const std::string& from, const std::string& to, const char* what) {
+  {
+    const auto disagree = [&](const std::string& from, const std::string& to, const char* what) {
       report("{} [{}] cannot feed {} [{}]: {}", connection.source, from, connection.receiver, to, what);
     };
     if (source.unit != receiver.unit)
@@ -218,8 +223,7 @@ private:
     for (const auto& request : wiring_.histories) {
       PortName name;
       std::string problem = "expected instance.window";
-      const auto* module =
-          split(request.window + ".", name) ? module_of(name.instance, problem) : nullptr;
+      const auto* module = split(request.window + ".", name) ? module_of(name.instance, problem) : nullptr;
       if (module == nullptr) {
         report("asks for the history of '{}': {}", request.window, problem);
         continue;

@@ -80,16 +80,16 @@ bool read_interfaces(CaseReader& reader, const Node& coupling, bool are_modules_
   bool is_sound = true;
   for (const auto& pair : *pairs) {
     const List* sides = pair.list();
-    const bool is_pair = sides != nullptr && sides->size() == 2 && (*sides)[0].text() != nullptr &&
-                         (*sides)[1].text() != nullptr;
+    const bool is_pair =
+        sides != nullptr && sides->size() == 2 && (*sides)[0].text() != nullptr && (*sides)[1].text() != nullptr;
     if (!is_pair)
       is_sound = wrong(pair.place, fmt::format("interfaces: {} is no pair of windows; expected two texts: {}",
                                                write_value(pair), example));
   }
   if (!is_sound) return false;
   if (pairs->size() != 1)
-    return wrong(node.place, fmt::format("interfaces has {} pairs; exactly one is supported today: {}", pairs->size(),
-                                         example));
+    return wrong(node.place,
+                 fmt::format("interfaces has {} pairs; exactly one is supported today: {}", pairs->size(), example));
   const List& sides = *(*pairs)[0].list();
   const bool is_fluid_sound = check_side(reader, sides[0], "fluid", are_modules_known);
   const bool is_structure_sound = check_side(reader, sides[1], "structure", are_modules_known);
@@ -106,9 +106,10 @@ void distribute_reference_pressure(CaseReader& reader, const Place& header, cons
       if (specs[i].name != reference_pressure) continue;
       const Node value{given == nullptr ? header : given->place, reader.value.reference_pressure};
       if (given == nullptr && specs[i].is_required != 0) {
-        reader.diagnostics.add(header, fmt::format("[coupling] has no '{}'; [{}] (plug-in {}) needs it: expected {}: {}",
-                                                   reference_pressure, module.instance, module.plugin,
-                                                   expected(specs[i]), specs[i].meaning));
+        reader.diagnostics.add(header,
+                               fmt::format("[coupling] has no '{}'; [{}] (plug-in {}) needs it: expected {}: {}",
+                                           reference_pressure, module.instance, module.plugin, expected(specs[i]),
+                                           specs[i].meaning));
         continue;
       }
       if (const auto wrong = take_value(value, specs[i], module.parameters[i]); !wrong.empty())

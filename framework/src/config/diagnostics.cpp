@@ -11,9 +11,7 @@ std::vector<Diagnostic> Diagnostics::sorted(const std::string& file) const
 {
   auto found = found_;
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
-    const auto rank = [](const Place& p) {
-      return std::tuple(p.flag.empty() ? 0 : 1, p.line, p.column);
-    };
+    const auto rank = [](const Place& p) { return std::tuple(p.flag.empty() ? 0 : 1, p.line, p.column); };
     return rank(a.first) < rank(b.first);
   });
   std::vector<Diagnostic> out;

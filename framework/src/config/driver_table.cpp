@@ -3,12 +3,12 @@
 #include "config/case_reader.hpp"
 #include "config/check_wiring.hpp"
 #include "config/parameter_table.hpp"
+#include "run/time_plan.hpp"
 
 #include <mullion/coupling/driver.hpp>
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <memory>
 #include <tuple>
 
@@ -33,18 +33,14 @@ const char* policy_name(TimePolicy policy)
   return "unknown";
 }
 
-/// For a driver that can't shorten the last step.
+/// For a scheme that can't shorten the last step: do whole steps fit into the run?
 void check_constant_step(CaseReader& reader)
 {
-  const Case& value = reader.value;
-  const double steps = (value.end_time - value.start_time) / value.dt;
-  constexpr double tolerance = 1e-6; // of a step: far above the rounding of the quotient, far below a real remainder
-  if (!(value.dt > 0.0) || !(steps > 0.0)) return; // reported with [run]
-  if (std::abs(steps - std::round(steps)) <= tolerance) return;
-  reader.diagnostics.add(reader.table("run")->table()->find("dt")->value.place,
-                         fmt::format("[run] dt = {}: driver {} cannot take steps of varying size, and the run is {} "
-                                     "steps long; choose dt and end_time so that it is a whole number",
-                                     value.dt, value.scheme, steps));
+  try {
+    static_cast<void>(run::TimePlan(reader.value, true));
+  } catch (const Error& error) {
+    reader.diagnostics.add(reader.table("run")->table()->find("dt")->value.place, error.what());
+  }
 }
 
 } // namespace
@@ -85,7 +81,7 @@ bool read_driver(CaseReader& reader)
   return diagnostics.size() == n_before;
 }
 
-void check_scheme(CaseReader& reader)
+void check_scheme(CaseReader& reader, bool are_times_sound)
 {
   Case& value = reader.value;
   const Node& table = *reader.table("driver");
@@ -115,7 +111,7 @@ void check_scheme(CaseReader& reader)
   for (const auto& mistake : check_wiring(value, wiring, reader.catalogue)) report(scheme, mistake);
   for (const auto& connection : wiring.connections)
     value.connections.push_back({connection.receiver, connection.source, policy_name(connection.policy)});
-  if (wiring.needs_constant_step) check_constant_step(reader);
+  if (wiring.needs_constant_step && are_times_sound) check_constant_step(reader);
 }
 
 } // namespace mullion::config

@@ -20,9 +20,8 @@ struct InstanceOptions {
   bool process = false;
   static constexpr auto table()
   {
-    return std::tuple{
-        required_parameter("module", &InstanceOptions::module, "", "name of the plug-in"),
-        parameter("process", &InstanceOptions::process, "", "runs in a process of its own")};
+    return std::tuple{required_parameter("module", &InstanceOptions::module, "", "name of the plug-in"),
+                      parameter("process", &InstanceOptions::process, "", "runs in a process of its own")};
   }
 };
 
@@ -52,9 +51,10 @@ bool is_instance(CaseReader& reader, const Entry& entry)
   if (entry.value.table() == nullptr) {
     const auto nearest = nearest_name(entry.key, framework_tables);
     if (const auto* list = entry.value.list(); list != nullptr && !list->empty() && (*list)[0].table() != nullptr)
-      diagnostics.add(entry.place, fmt::format("[[{0}]] is a list of tables; {1}", entry.key,
-                                               nearest == "expect" ? "did you mean [[expect]]?"
-                                                                   : "a module is one table: write [" + entry.key + "]"));
+      diagnostics.add(entry.place,
+                      fmt::format("[[{0}]] is a list of tables; {1}", entry.key,
+                                  nearest == "expect" ? "did you mean [[expect]]?"
+                                                      : "a module is one table: write [" + entry.key + "]"));
     else
       diagnostics.add(entry.place, fmt::format("'{}' stands outside of every table; put it under the table that it "
                                                "belongs to ([run], [coupling], [driver], [output] or a module's)",
@@ -95,8 +95,8 @@ const plugin::Library* module_plugin(CaseReader& reader, const std::string& inst
     return nullptr;
   }
   if (rank_of_kind(library->header().kind) == std::size(kinds)) {
-    reader.diagnostics.add(place, fmt::format("[{}] module = \"{}\" is of the unknown kind '{}'; known are {}", instance,
-                                              name, library->header().kind, fmt::join(kinds, ", ")));
+    reader.diagnostics.add(place, fmt::format("[{}] module = \"{}\" is of the unknown kind '{}'; known are {}",
+                                              instance, name, library->header().kind, fmt::join(kinds, ", ")));
     return nullptr;
   }
   return library;
@@ -137,8 +137,8 @@ bool read_instance(CaseReader& reader, const Entry& entry)
   instance.parameters.assign(values.begin() + n_own, values.end());
 
   const auto& modules = reader.value.modules;
-  const auto same_kind = std::find_if(modules.begin(), modules.end(),
-                                      [&](const ModuleCase& m) { return m.kind == instance.kind; });
+  const auto same_kind =
+      std::find_if(modules.begin(), modules.end(), [&](const ModuleCase& m) { return m.kind == instance.kind; });
   if (same_kind != modules.end()) {
     diagnostics.add(module_value.place,
                     fmt::format("[{}] is a second {} beside [{}]; a case has one of each kind today: remove one of the "

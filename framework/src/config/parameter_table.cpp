@@ -90,9 +90,7 @@ ParameterValue default_value(const mullion_parameter_spec& spec)
 
 std::string take_value(const Node& node, const mullion_parameter_spec& spec, ParameterValue& out)
 {
-  const auto wrong = [&](const char* what) {
-    return fmt::format("= {} {}; {}", write_value(node), what, wish(spec));
-  };
+  const auto wrong = [&](const char* what) { return fmt::format("= {} {}; {}", write_value(node), what, wish(spec)); };
   const auto wrong_type = [&] { return fmt::format("= {}; {}", describe(node), wish(spec)); };
   const auto* integer = std::get_if<std::int64_t>(&node.value);
 
@@ -141,10 +139,9 @@ std::vector<ParameterValue> read_parameters(const Node& node, const TableOwner& 
   }
   for (const auto& entry : table.entries)
     if (std::find(known.begin(), known.end(), entry.key) == known.end())
-      diagnostics.add(entry.place,
-                      fmt::format("{} knows no key '{}'{}{}", owner.label, entry.key,
-                                  owner.name.empty() ? "" : fmt::format(" (plug-in {})", owner.name),
-                                  suggestion(entry.key, known)));
+      diagnostics.add(entry.place, fmt::format("{} knows no key '{}'{}{}", owner.label, entry.key,
+                                               owner.name.empty() ? "" : fmt::format(" (plug-in {})", owner.name),
+                                               suggestion(entry.key, known)));
   return values;
 }
 

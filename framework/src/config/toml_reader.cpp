@@ -97,7 +97,12 @@ Node parse_value(const std::string& text, const Place& place)
   return {place, text};
 }
 
-bool is_valid_text(const std::string& text) { return try_parse("value = " + write_value({{}, text})).has_value(); }
+bool is_valid_text(const std::string& text)
+{
+  Node node;
+  node.value = text;
+  return try_parse("value = " + write_value(node)).has_value();
+}
 
 std::optional<std::vector<std::string>> parse_key(const std::string& text)
 {

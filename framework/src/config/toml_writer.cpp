@@ -106,8 +106,7 @@ std::string write_toml(const Node& root)
     if (entry.value.table() == nullptr && !is_list_of_tables(entry.value))
       out += fmt::format("{} = {}\n", key_text(entry.key), write_value(entry.value));
   for (const auto& entry : root.table()->entries) {
-    if (const auto* table = entry.value.table())
-      write_section(out, fmt::format("[{}]", key_text(entry.key)), *table);
+    if (const auto* table = entry.value.table()) write_section(out, fmt::format("[{}]", key_text(entry.key)), *table);
     else if (is_list_of_tables(entry.value))
       for (const auto& element : *entry.value.list())
         write_section(out, fmt::format("[[{}]]", key_text(entry.key)), *element.table());

@@ -8,14 +8,15 @@ namespace mullion {
 
 std::string Wiring::instance(const std::string& kind) const
 {
-  const auto found = std::find_if(instances_.begin(), instances_.end(),
-                                  [&](const auto& instance) { return instance.first == kind; });
+  const auto found =
+      std::find_if(instances_.begin(), instances_.end(), [&](const auto& instance) { return instance.first == kind; });
   if (found != instances_.end()) return found->second;
   std::vector<std::string> kinds;
   for (const auto& [known, name] : instances_) kinds.push_back(known);
-  throw Error(Errc::config, fmt::format("the scheme needs a module of the kind {}, and the case has none (it has: {}); "
-                                        "add a table with such a module: module = \"…\"",
-                                        kind, kinds.empty() ? "no modules" : fmt::format("{}", fmt::join(kinds, ", "))));
+  throw Error(Errc::config,
+              fmt::format("the scheme needs a module of the kind {}, and the case has none (it has: {}); "
+                          "add a table with such a module: module = \"…\"",
+                          kind, kinds.empty() ? "no modules" : fmt::format("{}", fmt::join(kinds, ", "))));
 }
 
 } // namespace mullion

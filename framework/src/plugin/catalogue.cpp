@@ -37,9 +37,8 @@ std::vector<std::string> plugin_path()
   if (error) return folders; // no /proc: the variable alone counts
   const fs::path here = executable.parent_path();
   if (here.filename() == "mullion" && here.parent_path().filename() == "lib")
-    add((here / "plugins").string()); // mullion-host
-  else
-    add((here.parent_path() / "lib" / "mullion" / "plugins").string()); // bin/mullion
+    add((here / "plugins").string());                                      // mullion-host
+  else add((here.parent_path() / "lib" / "mullion" / "plugins").string()); // bin/mullion
   return folders;
 }
 
@@ -79,10 +78,9 @@ const Library& Catalogue::open(const std::string& name)
   MULLION_REQUIRE(name.find('/') == std::string::npos, Errc::plugin,
                   "'{}' is a path; a plug-in is named, and its folder put on MULLION_PLUGIN_PATH", name);
   const auto path = find(name);
-  MULLION_REQUIRE(!path.empty(), Errc::plugin,
-                  "there is no plug-in '{}'{} (searched {}; MULLION_PLUGIN_PATH adds folders)", name,
-                  config::suggestion(name, names()),
-                  folders_.empty() ? "nowhere" : fmt::format("{}", fmt::join(folders_, ", ")));
+  MULLION_REQUIRE(
+      !path.empty(), Errc::plugin, "there is no plug-in '{}'{} (searched {}; MULLION_PLUGIN_PATH adds folders)", name,
+      config::suggestion(name, names()), folders_.empty() ? "nowhere" : fmt::format("{}", fmt::join(folders_, ", ")));
   auto library = std::make_unique<Library>(path);
   MULLION_REQUIRE(library->header().name == name, Errc::plugin,
                   "plug-in {}: the library calls itself '{}'; file and plug-in must have one name, rename the file "

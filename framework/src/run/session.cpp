@@ -36,7 +36,7 @@ void Session::begin(std::uint32_t index, Operation operation, std::uint32_t func
   auto& module = modules_[index];
   MULLION_REQUIRE(!module.in_flight, Errc::config, "driver {}: module '{}' was called again before it was awaited",
                   case_.scheme, module.config->instance);
-  if (n_in_flight_ > 0) refuse_conflicts(index);
+  if (n_in_flight_ > 0 && is_running_) refuse_conflicts(index); // start-up calls read no other window
   module.operation = operation;
   module.function = function;
   module.step = step;

@@ -114,8 +114,8 @@ int orchestrate(const RunOptions& options, shm::Control& control, int control_fd
       log::show_progress("");
       supervisor.unserve();
       if (const auto text = session.post_mortem(); !text.empty()) {
-        fs::create_directories(out);
-        io::write_file((out / "post-mortem.txt").string(), text);
+        io::make_folder(out);
+        io::write_atomically(out / "post-mortem.txt", text);
       }
       throw;
     }

@@ -42,4 +42,5 @@ public:
 
 } // namespace mullion::test
 
-MULLION_PLUGIN(mullion::test::ManyParametersFluid, "fluid", "many_parameters_fluid", "test fluid with a parameter of every type");
+MULLION_PLUGIN(mullion::test::ManyParametersFluid, "fluid", "many_parameters_fluid",
+               "test fluid with a parameter of every type");

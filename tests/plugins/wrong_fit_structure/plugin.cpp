@@ -28,4 +28,5 @@ public:
 
 } // namespace mullion::test
 
-MULLION_PLUGIN(mullion::test::WrongFitStructure, "structure", "wrong_fit_structure", "test structure whose fields fit to nothing");
+MULLION_PLUGIN(mullion::test::WrongFitStructure, "structure", "wrong_fit_structure",
+               "test structure whose fields fit to nothing");

@@ -144,7 +144,8 @@ TEST_CASE("the case as it is run reads back to the same case, bit for bit, overr
 {
   const CaseOptions options{{"run.dt=0.012345678901234567", "run.end_time=1e1", "fluid.offset=0.30000000000000004",
                              "fluid.label=a \"b\"", "output.every=7"},
-                            false, false};
+                            false,
+                            false};
   const auto first = TemporaryCase(run + tables).read(options);
 
   const auto second = TemporaryCase(first.text).read();

@@ -56,10 +56,7 @@ TEST_CASE("--set makes keys and tables that are missing")
         "[run]\ndt = 0.1\nname = \"a\"\n\n[driver]\nscheme = \"css\"\n");
 }
 
-TEST_CASE("a later --set wins")
-{
-  CHECK(overridden("", {"run.dt=1.0", "run.dt=2.0"}) == "[run]\ndt = 2.0\n");
-}
+TEST_CASE("a later --set wins") { CHECK(overridden("", {"run.dt=1.0", "run.dt=2.0"}) == "[run]\ndt = 2.0\n"); }
 
 TEST_CASE("a value may contain an equals sign, and a key quotes")
 {

@@ -30,7 +30,8 @@ TEST_CASE("of two near names the nearer one wins, of equals the first")
 
 TEST_CASE("a suggestion names the nearest, or what is known, at most twelve")
 {
-  const std::vector<std::string> thirteen = {"a1", "a2", "a3", "a4", "a5", "a6", "a7", "a8", "a9", "b1", "b2", "b3", "b4"};
+  const std::vector<std::string> thirteen = {"a1", "a2", "a3", "a4", "a5", "a6", "a7",
+                                             "a8", "a9", "b1", "b2", "b3", "b4"};
 
   CHECK(suggestion("evrey", {"every", "history"}) == "; did you mean 'every'?");
   CHECK(suggestion("folder", {"every", "history"}) == "; known are every, history");

@@ -39,9 +39,28 @@ TEST_CASE("real numbers are written shortest")
 TEST_CASE("written numbers read back to the same bits")
 {
   using Limits = std::numeric_limits<double>;
-  for (const double value : {0.0, -0.0, 1.0, -1.0, 0.1, 1.0 / 3.0, 0.05, 1e-5, 1e15, 1e16, 1e17, 1e22, 1e23, 1e300,
-                             123456789.012345678, Limits::min(), Limits::denorm_min(), Limits::max(), Limits::lowest(),
-                             Limits::epsilon(), std::nextafter(1.0, 2.0), std::nextafter(1.0, 0.0)})
+  for (const double value : {0.0,
+                             -0.0,
+                             1.0,
+                             -1.0,
+                             0.1,
+                             1.0 / 3.0,
+                             0.05,
+                             1e-5,
+                             1e15,
+                             1e16,
+                             1e17,
+                             1e22,
+                             1e23,
+                             1e300,
+                             123456789.012345678,
+                             Limits::min(),
+                             Limits::denorm_min(),
+                             Limits::max(),
+                             Limits::lowest(),
+                             Limits::epsilon(),
+                             std::nextafter(1.0, 2.0),
+                             std::nextafter(1.0, 0.0)})
     CHECK_MESSAGE(is_same(read_back(value), value), write_real(value));
 
   std::mt19937_64 random(20240101); // any fixed seed: bit patterns over all magnitudes

@@ -20,7 +20,7 @@ struct ParameterRow {
 };
 
 struct FieldRow {
-  std::string name;       ///< window.field
+  std::string name; ///< window.field
   std::string unit;
   std::string location;   ///< "node", "element", "pane"
   std::string components; ///< "vector", "1", "2", …

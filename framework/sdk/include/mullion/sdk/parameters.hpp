@@ -91,7 +91,7 @@ template <class Options> const std::vector<mullion_parameter_spec>& parameter_sp
     std::vector<mullion_parameter_spec> out;
     std::apply(
         [&](const auto&... entry) {
-          const auto add = [&](const auto& p) {
+          [[maybe_unused]] const auto add = [&](const auto& p) { // unused without a parameter
             using T = std::remove_cvref_t<decltype(defaults.*(p.member))>;
             mullion_parameter_spec spec{};
             spec.name = p.name;
@@ -129,7 +129,7 @@ template <class Options> Options read_options(const mullion_value* values)
   std::size_t i = 0;
   std::apply(
       [&](const auto&... entry) {
-        const auto read = [&](const auto& p) {
+        [[maybe_unused]] const auto read = [&](const auto& p) {
           using T = std::remove_cvref_t<decltype(options.*(p.member))>;
           const mullion_value& value = values[i++];
           if constexpr (std::is_same_v<T, std::string>) options.*(p.member) = value.text;

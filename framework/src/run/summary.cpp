@@ -1,0 +1,53 @@
+#include "run/summary.hpp"
+
+#include "run/signal.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace mullion::run {
+namespace {
+
+/// "0.0061 m (expected 0.0061, +0.02 %)"
+std::string beside_expected(double measured, double expected)
+{
+  if (expected == 0.0) return fmt::format("{:.6g}", measured);
+  return fmt::format("{:.6g} (expected {:.6g}, {:+.3f} %)", measured, expected, 100.0 * (measured / expected - 1.0));
+}
+
+std::string duration(double seconds)
+{
+  return seconds < 1e-3 ? fmt::format("{:.1f} us", seconds * 1e6)
+         : seconds < 1.0 ? fmt::format("{:.1f} ms", seconds * 1e3)
+                         : fmt::format("{:.2f} s", seconds);
+}
+
+} // namespace
+
+std::string summary(const Recorder& recorder, const std::string& stopped_by)
+{
+  const auto& attempt = recorder.attempt();
+  const auto& c = recorder.the_case();
+  const double per_step = attempt.wall_s / static_cast<double>(std::max<std::int64_t>(1, attempt.steps));
+  std::string text = fmt::format("run {}: {}{}, {} steps to t = {} s in {} ({} a step)\n", c.name, attempt.outcome,
+                                 stopped_by.empty() ? "" : " by " + stopped_by, attempt.steps, attempt.simulated_time,
+                                 duration(attempt.wall_s), duration(per_step));
+  for (std::size_t s = 0; s < recorder.series().size(); ++s) {
+    const auto& series = recorder.series()[s];
+    const auto& expected = c.expectations[s];
+    text += fmt::format("{}\n", series.quantity);
+    text += fmt::format("  amplitude  {}\n", beside_expected(amplitude(series.values), expected.amplitude));
+    text += fmt::format("  frequency  {} Hz\n",
+                        beside_expected(dominant_frequency(series.times, series.values), expected.frequency));
+    text += fmt::format("  expected from: {}\n", expected.source);
+  }
+  text += fmt::format("time          {:<28} {:>10} {:>10} {:>10} {:>7}\n", "", "calls", "work", "waiting", "share");
+  for (const auto& timing : attempt.timings)
+    text += fmt::format("  {:<12}{:<28} {:>10} {:>10} {:>10} {:>5.1f} %\n", timing.who, timing.call, timing.count,
+                        duration(timing.work_s), duration(timing.wait_s), 100.0 * timing.wall_s / attempt.wall_s);
+  text += fmt::format("results in {}\n", recorder.out().string());
+  return text;
+}
+
+} // namespace mullion::run
