@@ -111,9 +111,9 @@ std::optional<std::vector<std::string>> parse_key(const std::string& text)
   if (!document) return std::nullopt;
   std::vector<std::string> parts;
   for (const toml::table* table = &*document; table != nullptr && table->size() == 1;) {
-    const auto& [key, value] = *table->begin();
-    parts.emplace_back(key.str());
-    table = value.as_table();
+    const auto first = table->cbegin(); // holds what * and -> refer to
+    parts.emplace_back(first->first.str());
+    table = first->second.as_table();
   }
   return parts;
 }

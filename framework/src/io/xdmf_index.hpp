@@ -7,6 +7,7 @@
 #include "io/snapshot.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -38,7 +39,7 @@ public:
     const std::string* layout;
   };
   [[nodiscard]] const std::vector<Output>& outputs() const { return outputs_; }
-  template <class Keep> void keep_if(Keep keep) { std::erase_if(outputs_, keep); }
+  template <class Keep> void keep_if(Keep keep) { std::erase_if(outputs_, std::not_fn(keep)); }
 
   /// The whole file.
   [[nodiscard]] std::string text() const;

@@ -148,8 +148,8 @@ double growth_guess(std::span<const double> times, std::span<const double> value
   return n < 2.0 || spread <= 0.0 ? 0.0 : (n * sum_ty - sum_t * sum_y) / spread;
 }
 
-/// The model in units of the record: tau = (t - t_middle) / T, e = exp(s (tau - tau_0)) with tau_0 the end at which it
-/// is largest, so that e <= 1.
+/// The model in units of the record, exp(s tau) (a cos omega tau + b sin omega tau) + c: tau counts from the end of
+/// the record at which the oscillation is largest, so that exp <= 1 and the derivatives hardly depend on each other.
 struct Model {
   double s, omega; ///< sigma T, 2 pi f T
   double a = 0.0, b = 0.0, c = 0.0;
@@ -175,12 +175,12 @@ public:
     Normal sums{decltype(Normal::matrix)::Zero(), decltype(Normal::right)::Zero(), 0.0};
     const double tau_0 = m.s >= 0.0 ? 0.5 : -0.5;
     for (std::size_t i = 0; i < times_.size(); ++i) {
-      const double tau = (times_[i] - middle_) / length_;
-      const double e = std::exp(m.s * (tau - tau_0));
+      const double tau = (times_[i] - middle_) / length_ - tau_0;
+      const double e = std::exp(m.s * tau);
       const double cosine = e * std::cos(m.omega * tau), sine = e * std::sin(m.omega * tau);
       const double wave = m.a * cosine + m.b * sine;
       const double r = values_[i] - mean_ - wave - m.c;
-      const double d[5] = {(tau - tau_0) * wave, tau * (m.b * cosine - m.a * sine), cosine, sine, 1.0};
+      const double d[5] = {tau * wave, tau * (m.b * cosine - m.a * sine), cosine, sine, 1.0};
       for (int row = 0; row < 5; ++row) {
         for (int column = 0; column <= row; ++column) sums.matrix(row, column) += d[row] * d[column];
         sums.right(row) += d[row] * r;
