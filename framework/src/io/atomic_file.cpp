@@ -35,8 +35,7 @@ constexpr auto crc_tables = [] {
     tables[0][b] = crc;
   }
   for (std::size_t k = 1; k < 8; ++k)
-    for (std::size_t b = 0; b < 256; ++b)
-      tables[k][b] = (tables[k - 1][b] >> 8) ^ tables[0][tables[k - 1][b] & 0xff];
+    for (std::size_t b = 0; b < 256; ++b) tables[k][b] = (tables[k - 1][b] >> 8) ^ tables[0][tables[k - 1][b] & 0xff];
   return tables;
 }();
 
@@ -46,8 +45,7 @@ constexpr auto crc_tables = [] {
   if (code == ENOSPC || code == EDQUOT) hint = "; make room on that disk or choose another folder with --out";
   if (code == EFBIG) hint = "; the limit on file sizes (ulimit -f) is too small";
   if (code == EACCES || code == EROFS) hint = "; choose a folder that you may write to with --out";
-  throw Error(Errc::io, fmt::format("{} {}: {}{}", what, path.string(),
-                                    std::generic_category().message(code), hint));
+  throw Error(Errc::io, fmt::format("{} {}: {}{}", what, path.string(), std::generic_category().message(code), hint));
 }
 
 class Descriptor {
@@ -111,10 +109,7 @@ private:
   int fd_ = -1;
 };
 
-fs::path folder_of(const fs::path& path)
-{
-  return path.has_parent_path() ? path.parent_path() : fs::path(".");
-}
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
 std::array<std::byte, trailer_bytes> make_trailer(std::span<const std::byte> content)
 {
@@ -136,19 +131,16 @@ std::uint64_t crc64(std::span<const std::byte> content)
     std::uint64_t word = 0;
     std::memcpy(&word, content.data() + i, 8);
     crc ^= word;
-    crc = t[7][crc & 0xff] ^ t[6][(crc >> 8) & 0xff] ^ t[5][(crc >> 16) & 0xff] ^
-          t[4][(crc >> 24) & 0xff] ^ t[3][(crc >> 32) & 0xff] ^ t[2][(crc >> 40) & 0xff] ^
-          t[1][(crc >> 48) & 0xff] ^ t[0][crc >> 56];
+    crc = t[7][crc & 0xff] ^ t[6][(crc >> 8) & 0xff] ^ t[5][(crc >> 16) & 0xff] ^ t[4][(crc >> 24) & 0xff] ^
+          t[3][(crc >> 32) & 0xff] ^ t[2][(crc >> 40) & 0xff] ^ t[1][(crc >> 48) & 0xff] ^ t[0][crc >> 56];
   }
-  for (; i < content.size(); ++i)
-    crc = (crc >> 8) ^ t[0][(crc ^ static_cast<std::uint64_t>(content[i])) & 0xff];
+  for (; i < content.size(); ++i) crc = (crc >> 8) ^ t[0][(crc ^ static_cast<std::uint64_t>(content[i])) & 0xff];
   return ~crc;
 }
 
 void write_atomically(const fs::path& path, std::span<const std::byte> content, Trailer trailer)
 {
-  const fs::path temporary =
-      path.string() + fmt::format("{}{}", temporary_mark, static_cast<long>(::getpid()));
+  const fs::path temporary = path.string() + fmt::format("{}{}", temporary_mark, static_cast<long>(::getpid()));
   try {
     Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC, "cannot create");
     file.write(content);
@@ -174,25 +166,23 @@ Bytes read_checked(const fs::path& path)
   auto bytes = Descriptor(path, O_RDONLY, "cannot open").read<Bytes>();
   const auto size = bytes.size();
   MULLION_REQUIRE(size >= trailer_bytes && std::memcmp(bytes.data() + size - 8, magic, 8) == 0, Errc::io,
-                  "{} ({} bytes) does not end with Mullion's trailer: it was truncated, or something else wrote it",
+                  "{} ({} bytes) does not end with Mullion's trailer: it was truncated, or "
+                  "something else wrote it",
                   path.string(), size);
   std::uint64_t numbers[2];
   std::memcpy(numbers, bytes.data() + size - trailer_bytes, 16);
   bytes.resize(size - trailer_bytes);
   MULLION_REQUIRE(numbers[0] == bytes.size(), Errc::io,
-                  "{} was truncated or altered: its trailer says {} bytes, {} are there", path.string(),
-                  numbers[0], bytes.size());
+                  "{} was truncated or altered: its trailer says {} bytes, {} are there", path.string(), numbers[0],
+                  bytes.size());
   const auto found = crc64(bytes);
   MULLION_REQUIRE(numbers[1] == found, Errc::io,
-                  "{} was altered: its trailer says checksum {:016x}, its content has {:016x}",
-                  path.string(), numbers[1], found);
+                  "{} was altered: its trailer says checksum {:016x}, its content has {:016x}", path.string(),
+                  numbers[1], found);
   return bytes;
 }
 
-std::string read_text(const fs::path& path)
-{
-  return Descriptor(path, O_RDONLY, "cannot open").read<std::string>();
-}
+std::string read_text(const fs::path& path) { return Descriptor(path, O_RDONLY, "cannot open").read<std::string>(); }
 
 void make_folder(const fs::path& folder)
 {

@@ -1,7 +1,8 @@
 // Files that are either the old or the new content, never a part: written to a temporary name beside the target,
-// synced, renamed, and the folder synced. Binary files carry a trailer (length and checksum) behind their content, so
-// that no reader, least of all the HDF5 library, sees a byte of a file that was cut short or altered. A process that dies here
-// leaves `<name>.tmp-<pid>` behind and the old file whole; remove_stale_temporaries() sweeps such files.
+// synced, renamed, and the folder synced. Binary files carry a trailer (length and checksum) behind their content,
+// so that no reader, least of all the HDF5 library, sees a byte of a file that was cut short or altered. A process
+// that dies here leaves `<name>.tmp-<pid>` behind and the old file whole; remove_stale_temporaries() sweeps such
+// files.
 #pragma once
 
 #include <cstddef>
@@ -25,8 +26,7 @@ inline constexpr std::size_t trailer_bytes = 24;
 
 /// Replace the file at `path` by `content` in one step. The folder must exist.
 /// @throws Error Errc::io: what failed, on which file, and why (disk full, no permission, ...); the old file is whole
-void write_atomically(const std::filesystem::path& path, std::span<const std::byte> content,
-                      Trailer trailer);
+void write_atomically(const std::filesystem::path& path, std::span<const std::byte> content, Trailer trailer);
 void write_atomically(const std::filesystem::path& path, std::string_view text);
 
 /// The content of a file that write_atomically() wrote with Trailer::checksum.

@@ -32,8 +32,7 @@ herr_t keep_deepest(unsigned n, const H5E_error2_t* entry, void* text)
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_deepest, &text); // upward starts at the cause
   H5Eclear2(H5E_DEFAULT);
-  throw Error(Errc::io, fmt::format("HDF5 cannot {} {}: {}", what, where,
-                                    text.empty() ? "no reason given" : text));
+  throw Error(Errc::io, fmt::format("HDF5 cannot {} {}: {}", what, where, text.empty() ? "no reason given" : text));
 }
 
 Hdf5Handle own(hid_t id, Hdf5Handle::Close close, std::string_view what, std::string_view where)
@@ -102,8 +101,8 @@ ImageBuilder::ImageBuilder()
   check(H5Pset_fill_time(plain_dataset_.get(), H5D_FILL_TIME_NEVER), "turn off", "fill values");
   plain_group_ = timeless(H5P_GROUP_CREATE);
   const auto name = unique_name();
-  file_ = own(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose, "make",
-              "a file in memory");
+  file_ =
+      own(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose, "make", "a file in memory");
 }
 
 void ImageBuilder::group(const std::string& path)
@@ -111,8 +110,8 @@ void ImageBuilder::group(const std::string& path)
   MULLION_ASSERT(path.size() > 1 && path[0] == '/' && path.back() != '/', "HDF5 path '{}'", path);
   if (groups_.contains(path)) return;
   make_parents(path);
-  own(H5Gcreate2(file_.get(), path.c_str(), H5P_DEFAULT, plain_group_.get(), H5P_DEFAULT), H5Gclose,
-      "make the group", path);
+  own(H5Gcreate2(file_.get(), path.c_str(), H5P_DEFAULT, plain_group_.get(), H5P_DEFAULT), H5Gclose, "make the group",
+      path);
   groups_.insert(path);
 }
 
@@ -143,16 +142,16 @@ void ImageBuilder::dataset(const std::string& path, std::span<const std::byte> v
   write(path, H5T_STD_U8LE, H5T_NATIVE_UINT8, values.data(), {static_cast<std::int64_t>(values.size())});
 }
 
-void ImageBuilder::write(const std::string& path, std::int64_t file_type, std::int64_t memory_type,
-                         const void* values, const Extents& extents)
+void ImageBuilder::write(const std::string& path, std::int64_t file_type, std::int64_t memory_type, const void* values,
+                         const Extents& extents)
 {
   make_parents(path);
   const std::vector<hsize_t> sizes(extents.begin(), extents.end());
   const auto space = own(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose,
                          "make the extents of", path);
-  const auto set = own(H5Dcreate2(file_.get(), path.c_str(), file_type, space.get(), H5P_DEFAULT,
-                                  plain_dataset_.get(), H5P_DEFAULT),
-                       H5Dclose, "make the dataset", path);
+  const auto set =
+      own(H5Dcreate2(file_.get(), path.c_str(), file_type, space.get(), H5P_DEFAULT, plain_dataset_.get(), H5P_DEFAULT),
+          H5Dclose, "make the dataset", path);
   if (std::find(extents.begin(), extents.end(), 0) != extents.end()) return;
   MULLION_ASSERT(values != nullptr, "no values for the HDF5 dataset {}", path);
   check(H5Dwrite(set.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "write", path);
@@ -180,19 +179,17 @@ void ImageBuilder::write_attribute(const std::string& path, const std::string& n
 {
   const auto where = path + "@" + name;
   const auto space = own(H5Screate(H5S_SCALAR), H5Sclose, "make the attribute", where);
-  const auto attribute = own(H5Acreate_by_name(file_.get(), path.c_str(), name.c_str(), type, space.get(),
-                                               H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+  const auto attribute = own(H5Acreate_by_name(file_.get(), path.c_str(), name.c_str(), type, space.get(), H5P_DEFAULT,
+                                               H5P_DEFAULT, H5P_DEFAULT),
                              H5Aclose, "make the attribute", where);
   check(H5Awrite(attribute.get(), type, value), "write the attribute", where);
 }
 
-void ImageBuilder::external_link(const std::string& path, const std::string& file,
-                                 const std::string& target)
+void ImageBuilder::external_link(const std::string& path, const std::string& file, const std::string& target)
 {
   make_parents(path);
-  check(H5Lcreate_external(file.c_str(), target.c_str(), file_.get(), path.c_str(), H5P_DEFAULT,
-                           H5P_DEFAULT),
-        "link", path);
+  check(H5Lcreate_external(file.c_str(), target.c_str(), file_.get(), path.c_str(), H5P_DEFAULT, H5P_DEFAULT), "link",
+        path);
 }
 
 Bytes ImageBuilder::finish()
@@ -213,8 +210,7 @@ ImageReader::ImageReader(std::span<const std::byte> image, std::string source) :
 {
   const auto access = core_access();
   // HDF5 copies the buffer; it takes a non-const pointer and leaves the bytes alone
-  check(H5Pset_file_image(access.get(), const_cast<std::byte*>(image.data()), image.size()), "take in",
-        source_);
+  check(H5Pset_file_image(access.get(), const_cast<std::byte*>(image.data()), image.size()), "take in", source_);
   const auto name = unique_name();
   file_ = own(H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose, "open", source_);
 }
@@ -258,20 +254,17 @@ template <class T> std::vector<T> ImageReader::read(const std::string& path, std
   const auto where = source_ + ":" + path;
   const auto set = own(H5Dopen2(file_.get(), path.c_str(), H5P_DEFAULT), H5Dclose, "open", where);
   const auto stored = own(H5Dget_type(set.get()), H5Tclose, "read the type of", where);
-  MULLION_REQUIRE(H5Tget_class(stored.get()) == H5Tget_class(type) && H5Tget_size(stored.get()) == sizeof(T),
-                  Errc::io, "{} does not hold numbers of the expected type ({} bytes each)", where, sizeof(T));
+  MULLION_REQUIRE(H5Tget_class(stored.get()) == H5Tget_class(type) && H5Tget_size(stored.get()) == sizeof(T), Errc::io,
+                  "{} does not hold numbers of the expected type ({} bytes each)", where, sizeof(T));
   const auto sizes = extents(path);
-  std::vector<T> values(static_cast<std::size_t>(
-      std::accumulate(sizes.begin(), sizes.end(), std::int64_t{1}, std::multiplies<>())));
+  std::vector<T> values(
+      static_cast<std::size_t>(std::accumulate(sizes.begin(), sizes.end(), std::int64_t{1}, std::multiplies<>())));
   if (values.empty()) return values;
   check(H5Dread(set.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read", where);
   return values;
 }
 
-std::vector<double> ImageReader::f64(const std::string& path) const
-{
-  return read<double>(path, H5T_NATIVE_DOUBLE);
-}
+std::vector<double> ImageReader::f64(const std::string& path) const { return read<double>(path, H5T_NATIVE_DOUBLE); }
 
 std::vector<std::int32_t> ImageReader::i32(const std::string& path) const
 {
@@ -285,13 +278,12 @@ std::vector<std::int64_t> ImageReader::i64(const std::string& path) const
 
 Bytes ImageReader::bytes(const std::string& path) const { return read<std::byte>(path, H5T_NATIVE_UINT8); }
 
-void ImageReader::read_attribute(const std::string& path, const std::string& name, int type_class,
-                                 std::int64_t type, void* value) const
+void ImageReader::read_attribute(const std::string& path, const std::string& name, int type_class, std::int64_t type,
+                                 void* value) const
 {
   const auto where = source_ + ":" + path + "@" + name;
   const auto attribute =
-      own(H5Aopen_by_name(file_.get(), path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "open",
-          where);
+      own(H5Aopen_by_name(file_.get(), path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "open", where);
   const auto stored = own(H5Aget_type(attribute.get()), H5Tclose, "read the type of", where);
   const auto space = own(H5Aget_space(attribute.get()), H5Sclose, "measure", where);
   MULLION_REQUIRE(H5Tget_class(stored.get()) == type_class && H5Sget_simple_extent_npoints(space.get()) == 1 &&

@@ -58,10 +58,9 @@ public:
 
 private:
   void make_parents(const std::string& path);
-  void write(const std::string& path, std::int64_t file_type, std::int64_t memory_type,
-             const void* values, const Extents& extents);
-  void write_attribute(const std::string& path, const std::string& name, std::int64_t type,
-                       const void* value);
+  void write(const std::string& path, std::int64_t file_type, std::int64_t memory_type, const void* values,
+             const Extents& extents);
+  void write_attribute(const std::string& path, const std::string& name, std::int64_t type, const void* value);
 
   Hdf5Handle file_, plain_dataset_, plain_group_; ///< the creation properties without time stamps
   std::set<std::string> groups_;
@@ -87,8 +86,8 @@ public:
 
 private:
   template <class T> std::vector<T> read(const std::string& path, std::int64_t type) const;
-  void read_attribute(const std::string& path, const std::string& name, int type_class,
-                      std::int64_t type, void* value) const;
+  void read_attribute(const std::string& path, const std::string& name, int type_class, std::int64_t type,
+                      void* value) const;
 
   std::string source_;
   Hdf5Handle file_;

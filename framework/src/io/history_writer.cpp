@@ -24,8 +24,7 @@ constexpr std::size_t flush_size = std::size_t{1} << 20; // [bytes] whatever the
 
 [[noreturn]] void fail(const char* what, const std::filesystem::path& path, int code)
 {
-  throw Error(Errc::io, fmt::format("cannot {} {}: {}", what, path.string(),
-                                    std::generic_category().message(code)));
+  throw Error(Errc::io, fmt::format("cannot {} {}: {}", what, path.string(), std::generic_category().message(code)));
 }
 
 /// Bytes of `text` up to and with the last whole line whose step is at most `step`.
@@ -87,8 +86,8 @@ HistoryWriter::~HistoryWriter()
 
 void HistoryWriter::row(std::int64_t step, double time, std::span<const double> values)
 {
-  MULLION_ASSERT(fd_ >= 0 && values.size() == n_columns_, "{}: a row of {} values for {} columns{}",
-                 path_.string(), values.size(), n_columns_, fd_ < 0 ? ", after close" : "");
+  MULLION_ASSERT(fd_ >= 0 && values.size() == n_columns_, "{}: a row of {} values for {} columns{}", path_.string(),
+                 values.size(), n_columns_, fd_ < 0 ? ", after close" : "");
   auto out = std::back_inserter(buffer_);
   fmt::format_to(out, FMT_COMPILE("{},{}"), step, time);
   for (const double value : values) fmt::format_to(out, FMT_COMPILE(",{}"), value);

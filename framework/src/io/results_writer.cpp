@@ -45,8 +45,8 @@ void check_pane(const std::string& group, const PaneData& pane)
                     block.element, block.nodes_per_element);
     n_elements += block.n_elements;
   }
-  MULLION_REQUIRE(n_elements == pane.n_elements, Errc::shape, "results: {} has {} elements but its blocks {}",
-                  group, pane.n_elements, n_elements);
+  MULLION_REQUIRE(n_elements == pane.n_elements, Errc::shape, "results: {} has {} elements but its blocks {}", group,
+                  pane.n_elements, n_elements);
 }
 
 std::int64_t expected_entities(const FieldData& field, const PaneData& pane)
@@ -63,17 +63,16 @@ void write_field(ImageBuilder& image, const std::string& group, const PaneData& 
   const auto path = group + "/" + field.name;
   MULLION_REQUIRE(!field.name.empty() && field.name.find('/') == std::string::npos && field.name != "geometry" &&
                       field.name != "topology" && !field.name.starts_with("connectivity_"),
-                  Errc::plugin, "results: {} cannot be written: the name '{}' has a meaning in results files; "
-                  "rename the field in its module", path, field.name);
+                  Errc::plugin,
+                  "results: {} cannot be written: the name '{}' has a meaning in results files; "
+                  "rename the field in its module",
+                  path, field.name);
   MULLION_REQUIRE(field.entities == expected_entities(field, pane), Errc::shape,
                   "results: {} has {} entries but its pane {} ({}s)", path, field.entities,
                   expected_entities(field, pane), location_name(field.location));
-  const Extents extents =
-      field.components == 1 ? Extents{field.entities} : Extents{field.entities, field.components};
-  if (field.f64 != nullptr || field.i32 == nullptr)
-    image.dataset(path, field.f64, extents);
-  else
-    image.dataset(path, field.i32, extents);
+  const Extents extents = field.components == 1 ? Extents{field.entities} : Extents{field.entities, field.components};
+  if (field.f64 != nullptr || field.i32 == nullptr) image.dataset(path, field.f64, extents);
+  else image.dataset(path, field.i32, extents);
   image.attribute(path, "unit", field.unit);
   image.attribute(path, "location", location_name(field.location));
   if (field.meaning) image.attribute(path, "meaning", *field.meaning);
@@ -319,8 +318,7 @@ void ResultsWriter::run_thread()
         is_output_written = true;
       }
     } catch (const Error& failure) {
-      error = std::make_exception_ptr(
-          Error(failure.code(), fmt::format("run '{}': {}", run_name_, failure.what())));
+      error = std::make_exception_ptr(Error(failure.code(), fmt::format("run '{}': {}", run_name_, failure.what())));
     } catch (...) {
       error = std::current_exception();
     }

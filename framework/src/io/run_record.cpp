@@ -122,8 +122,7 @@ Attempt attempt_from_json(const Json& json)
   take(json, "error", a.error);
   take(json, "start", a.start);
   if (const auto versions = json.find("versions"); versions != json.end())
-    for (const auto& [what, version] : versions->items())
-      a.versions.emplace_back(what, version.get<std::string>());
+    for (const auto& [what, version] : versions->items()) a.versions.emplace_back(what, version.get<std::string>());
   take(json, "driver", a.driver);
   take_list(json, "modules", a.modules, module_from_json);
   take(json, "restarted_from", a.restarted_from);

@@ -1,5 +1,5 @@
-// run.json: what a run was and how it went, one entry per attempt (a restart in the same folder appends one). Written at
-// the start with outcome "running" and replaced at the end; if the process died in between, the guard closes the
+// run.json: what a run was and how it went, one entry per attempt (a restart in the same folder appends one). Written
+// at the start with outcome "running" and replaced at the end; if the process died in between, the guard closes the
 // record. Replaced atomically, so a reader sees a whole record at any time.
 #pragma once
 

@@ -73,8 +73,7 @@ std::string topology(const std::string& group, const PaneData& pane)
   if (pane.blocks.empty()) // a cloud of nodes: each is shown as a point
     return fmt::format("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\">{}"
                        "</Topology>\n",
-                       pane.n_nodes,
-                       data_item("mesh", group + "/topology", fmt::format("{} 1", pane.n_nodes), false));
+                       pane.n_nodes, data_item("mesh", group + "/topology", fmt::format("{} 1", pane.n_nodes), false));
   std::int64_t length = 0;
   for (const auto& block : pane.blocks) {
     const int extra = block.element <= MULLION_LINE2 ? 2 : 1; // points and lines say their number of nodes
@@ -88,17 +87,14 @@ std::string topology(const std::string& group, const PaneData& pane)
 std::string attribute(std::string_view file, const std::string& group, const FieldData& field)
 {
   if (field.entities == 0 || field.components == 0) return "";
-  const char* const type = field.components == 1   ? "Scalar"
-                           : field.components <= 3 ? "Vector"
-                                                   : "Matrix";
+  const char* const type = field.components == 1 ? "Scalar" : field.components <= 3 ? "Vector" : "Matrix";
   const char* const center = field.location == MULLION_NODE      ? "Node"
                              : field.location == MULLION_ELEMENT ? "Cell"
                                                                  : "Grid";
   const auto extents = field.components == 1 ? fmt::format("{}", field.entities)
                                              : fmt::format("{} {}", field.entities, field.components);
-  return fmt::format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n",
-                     escaped(field.name), type, center,
-                     data_item(file, group + "/" + field.name, extents, field.f64 != nullptr));
+  return fmt::format("<Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n", escaped(field.name),
+                     type, center, data_item(file, group + "/" + field.name, extents, field.f64 != nullptr));
 }
 
 /// `text` without `start`, if it starts with that.
@@ -152,8 +148,7 @@ void XdmfIndex::add(std::int64_t step, double time, const std::vector<WindowData
     for (const auto& pane : window.panes) {
       if (pane.n_nodes == 0) continue; // readers stumble over grids without nodes
       const auto group = pane_group(window, pane);
-      layout += fmt::format("<Grid Name=\"{}\" GridType=\"Uniform\">\n{}", escaped(group.substr(1)),
-                            fixed_.at(group));
+      layout += fmt::format("<Grid Name=\"{}\" GridType=\"Uniform\">\n{}", escaped(group.substr(1)), fixed_.at(group));
       layout += fmt::format("<Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
                             data_item(file, group + "/geometry", fmt::format("{} 3", pane.n_nodes), true));
       for (const auto& field : pane.fields) layout += attribute(file, group, field);
@@ -204,12 +199,9 @@ std::string XdmfIndex::text() const
   for (const auto& output : outputs_) {
     const auto name = output_name(output.step);
     for (const char c : *output.layout) {
-      if (c == step_mark)
-        out += name;
-      else if (c == time_mark)
-        fmt::format_to(std::back_inserter(out), "{}", output.time);
-      else
-        out += c;
+      if (c == step_mark) out += name;
+      else if (c == time_mark) fmt::format_to(std::back_inserter(out), "{}", output.time);
+      else out += c;
     }
   }
   out += tail;

@@ -20,8 +20,8 @@ constexpr double two_pi = 2.0 * std::numbers::pi;
 
 void check_samples(std::span<const double> times, std::span<const double> values)
 {
-  MULLION_REQUIRE(times.size() == values.size(), Errc::shape, "a signal of {} values at {} times",
-                  values.size(), times.size());
+  MULLION_REQUIRE(times.size() == values.size(), Errc::shape, "a signal of {} values at {} times", values.size(),
+                  times.size());
   for (std::size_t i = 0; i < times.size(); ++i) {
     MULLION_REQUIRE(std::isfinite(times[i]) && std::isfinite(values[i]), Errc::numeric,
                     "sample {} of a signal is not finite: value {} at time {}", i, values[i], times[i]);
@@ -35,13 +35,13 @@ std::size_t n_uniform(std::span<const double> times)
 {
   const auto n = times.size();
   const double step = (times[n - 2] - times[0]) / static_cast<double>(n - 2);
-  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() *
-                          std::max(std::abs(times[0]), std::abs(times[n - 1]));
+  const double rounding =
+      4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(times[0]), std::abs(times[n - 1]));
   const double tolerance = 1e-6 * step + rounding; // of a sample's place: far below what moves a frequency
   for (std::size_t i = 0; i + 1 < n; ++i)
     MULLION_REQUIRE(std::abs(times[i] - times[0] - static_cast<double>(i) * step) <= tolerance, Errc::shape,
-                    "the frequency of a signal needs equal time steps; at time {} there is another than {}",
-                    times[i], step);
+                    "the frequency of a signal needs equal time steps; at time {} there is another than {}", times[i],
+                    step);
   return std::abs(times[n - 1] - times[0] - static_cast<double>(n - 1) * step) <= tolerance ? n : n - 1;
 }
 
@@ -53,8 +53,7 @@ std::vector<double> windowed(std::span<const double> values)
   double mean = 0.0, moment = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) mean += values[i];
   mean /= n;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    moment += (static_cast<double>(i) - centre) * (values[i] - mean);
+  for (std::size_t i = 0; i < values.size(); ++i) moment += (static_cast<double>(i) - centre) * (values[i] - mean);
   const double slope = moment / (n * (n * n - 1.0) / 12.0);
   std::vector<double> result(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -95,8 +94,7 @@ Spectrum spectrum_at(std::span<const double> signal, double turns)
   // dX/df = -2 pi i sum s x: with u = f in periods per record, d/du
   const Complex d1 = Complex(0.0, -two_pi) * x1;
   const Complex d2 = -two_pi * two_pi * x2;
-  return {std::norm(x0), 2.0 * (std::conj(x0) * d1).real(),
-          2.0 * (std::norm(d1) + (std::conj(x0) * d2).real())};
+  return {std::norm(x0), 2.0 * (std::conj(x0) * d1).real(), 2.0 * (std::norm(d1) + (std::conj(x0) * d2).real())};
 }
 
 /// The place of the spectrum's maximum near `periods` (per record), found on a grid of spacing `width`.
@@ -226,8 +224,8 @@ double minimise(const Fit& fit, Model& m)
       if (damping > 1e6) break;
       continue;
     }
-    const bool is_done = std::abs(d[0]) <= 1e-10 * std::max(1.0, std::abs(next.s)) &&
-                         std::abs(d[1]) <= 1e-11 * std::abs(next.omega);
+    const bool is_done =
+        std::abs(d[0]) <= 1e-10 * std::max(1.0, std::abs(next.s)) && std::abs(d[1]) <= 1e-11 * std::abs(next.omega);
     m = next;
     sums = next_sums;
     damping *= 0.1;
@@ -254,8 +252,8 @@ double dominant_frequency(std::span<const double> times, std::span<const double>
   const double step = (times[n - 1] - times[0]) / static_cast<double>(n - 1);
 
   const auto signal = windowed(values);
-  const double largest = std::abs(*std::max_element(
-      values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+  const double largest = std::abs(
+      *std::max_element(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
   const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * largest;
   if (amplitude(signal) <= rounding) return 0.0; // constant or linear but for rounding
 
@@ -295,7 +293,8 @@ Growth growth_rate(std::span<const double> times, std::span<const double> values
     Model model{guess * length, two_pi * frequency * length};
     fit.solve_linear(model);
     const double residual = std::sqrt(minimise(fit, model) / square);
-    if (residual < best.relative_residual) best = {model.s / length, std::abs(model.omega) / (two_pi * length), residual};
+    if (residual < best.relative_residual)
+      best = {model.s / length, std::abs(model.omega) / (two_pi * length), residual};
     if (best.relative_residual < 0.1) break;
   }
   return best;

@@ -157,8 +157,7 @@ TEST_CASE("a missing folder and a missing file are errors that name them")
   CHECK_THROWS_WITH_AS((void)read_checked(scratch / "missing"), doctest::Contains("missing: No such file"), Error);
   CHECK_THROWS_WITH_AS((void)read_text(scratch.path()), doctest::Contains("Is a directory"), Error);
   overwrite(scratch / "plain", "");
-  CHECK_THROWS_WITH_AS(make_folder(scratch / "plain" / "sub"), doctest::Contains("plain/sub: Not a directory"),
-                       Error);
+  CHECK_THROWS_WITH_AS(make_folder(scratch / "plain" / "sub"), doctest::Contains("plain/sub: Not a directory"), Error);
 }
 
 TEST_CASE("temporaries of dead processes are swept, those of living ones and other files are not")

@@ -29,8 +29,7 @@ TEST_CASE("a history has a header and a line per step")
   history.row(1, 1e-5, values);
   history.close();
 
-  CHECK(read_text(scratch / "history.csv") ==
-        "step,time,force,fluid.energy\n0,0,0.1,-2.5e-07\n1,1e-05,0.1,-2.5e-07\n");
+  CHECK(read_text(scratch / "history.csv") == "step,time,force,fluid.energy\n0,0,0.1,-2.5e-07\n1,1e-05,0.1,-2.5e-07\n");
 }
 
 TEST_CASE("every finite double of a history reads back to the same bits")

@@ -88,7 +88,8 @@ TEST_CASE("an output holds its fields with unit and location, and step and time"
   CHECK(file->text_attribute("/fluid/volume/pane_0/energy", "location") == "pane");
 }
 
-TEST_CASE("the geometry is the coordinates, else reference plus displacement, else the reference, in three components")
+TEST_CASE("the geometry is the coordinates, else reference plus displacement, else the reference, "
+          "in three components")
 {
   const Scratch out;
   write_run(out.path(), "run", {1});
@@ -116,8 +117,7 @@ TEST_CASE("mesh.h5 holds reference coordinates, connectivity by block, and fixed
   CHECK(mesh->i32(plate + "tag") == std::vector<std::int32_t>{7, 8, 9, 10});
   CHECK(mesh->i64_attribute("/structure/plate/pane_4", "n_elements") == 4);
   // XDMF: quadrilateral 5, triangle 4, polyline 2 and polyvertex 1 with their numbers of nodes
-  CHECK(mesh->i32(plate + "topology") ==
-        std::vector<std::int32_t>{5, 0, 1, 2, 3, 4, 1, 4, 2, 2, 2, 0, 4, 1, 1, 3});
+  CHECK(mesh->i32(plate + "topology") == std::vector<std::int32_t>{5, 0, 1, 2, 3, 4, 1, 4, 2, 2, 2, 0, 4, 1, 1, 3});
   // hexahedron 9, pyramid 7, wedge 8, tetrahedron 6
   CHECK(mesh->i32("/structure/solid/pane_1/topology") ==
         std::vector<std::int32_t>{9, 0, 1, 2, 3, 4, 5, 6, 7, 7, 4, 5, 6, 7, 8, 8, 1, 9, 5, 2, 10, 6, 6, 9, 11, 10, 5});
@@ -141,10 +141,8 @@ TEST_CASE("every dataset that results.xdmf names exists and has the extents it s
     std::string extents;
     for (const auto n : (*file)->extents(path)) extents += (extents.empty() ? "" : " ") + std::to_string(n);
     CHECK(extents == (*it)[1].str());
-    if ((*it)[2] == "Int")
-      CHECK_NOTHROW((void)(*file)->i32(path));
-    else
-      CHECK_NOTHROW((void)(*file)->f64(path));
+    if ((*it)[2] == "Int") CHECK_NOTHROW((void)(*file)->i32(path));
+    else CHECK_NOTHROW((void)(*file)->f64(path));
     ++n_items;
   }
 
@@ -208,7 +206,8 @@ TEST_CASE("a result file that is there already is replaced")
   CHECK(Opened(out / "results/000000001.h5")->i64_attribute("/", "step") == 1);
 }
 
-TEST_CASE("results that cannot be written are an error at the next call, and the index names only what is there")
+TEST_CASE("results that cannot be written are an error at the next call, and the index names only "
+          "what is there")
 {
   const Scratch out;
   const int child = ::fork(); // a process of its own: the limit holds for all its threads

@@ -23,7 +23,8 @@ RunRecord some_record()
   Attempt attempt;
   attempt.versions = {{"mullion", "0.1.0"}, {"hdf5", "1.10.8"}};
   attempt.start = "2024-05-01T12:00:00Z";
-  attempt.modules = {{"fluid", "fluid", "euler_1d", "0.1", true}, {"structure", "structure", "elastic_bar", "0.1", false}};
+  attempt.modules = {{"fluid", "fluid", "euler_1d", "0.1", true},
+                     {"structure", "structure", "elastic_bar", "0.1", false}};
   attempt.driver = "cibc";
   attempt.steps = 100;
   attempt.simulated_time = 0.1;

@@ -46,15 +46,15 @@ struct SmallRun {
 
   std::vector<double> plate_x{0, 0, 1, 0, 1, 1, 0, 1, 2, 0};
   std::vector<std::int32_t> quadrilateral{0, 1, 2, 3}, triangle{1, 4, 2}, line{0, 4}, point{3};
-  std::vector<double> displacement{0, 0, 0.5, 0, 0.5, 0.25, 0, 0, 0, 1}, stress{11, 12, 13, 14, 21, 22, 23, 24,
-                                                                               31, 32, 33, 34, 41, 42, 43, 44};
+  std::vector<double> displacement{0, 0, 0.5, 0, 0.5, 0.25, 0, 0, 0, 1},
+      stress{11, 12, 13, 14, 21, 22, 23, 24, 31, 32, 33, 34, 41, 42, 43, 44};
   std::vector<std::int32_t> tag{7, 8, 9, 10};
 
   // a unit cube (0-7), a pyramid on its top (8), a prism at its side (9, 10), a tetrahedron beyond (11)
   std::vector<double> solid_x{0, 0, 0, 1, 0, 0, 1,   1,   0, 0, 1, 0, 0, 0, 1, 1, 0, 1,
                               1, 1, 1, 0, 1, 1, 0.5, 0.5, 2, 2, 0, 0, 2, 1, 0, 3, 0, 0};
-  std::vector<std::int32_t> hexahedron{0, 1, 2, 3, 4, 5, 6, 7}, pyramid{4, 5, 6, 7, 8},
-      prism{1, 9, 5, 2, 10, 6}, tetrahedron{9, 11, 10, 5};
+  std::vector<std::int32_t> hexahedron{0, 1, 2, 3, 4, 5, 6, 7}, pyramid{4, 5, 6, 7, 8}, prism{1, 9, 5, 2, 10, 6},
+      tetrahedron{9, 11, 10, 5};
   std::vector<double> velocity = std::vector<double>(36, 0.5);
 
   [[nodiscard]] std::vector<io::WindowData> mesh() const

@@ -43,13 +43,13 @@ TEST_CASE("the amplitude is half of the range")
   CHECK(amplitude({}) == 0.0);
 }
 
-TEST_CASE("the frequency of a sine is found between the lines of the spectrum, whatever its phase, mean and drift")
+TEST_CASE("the frequency of a sine is found between the lines of the spectrum, whatever its phase, "
+          "mean and drift")
 {
   for (const double frequency : {20.3, 41.7, 123.456, 480.1})
     for (const double phase : {0.0, 0.7, 2.0}) {
-      const Signal signal(2000, 1e-3, [&](double t) {
-        return 1e3 + 5.0 * t + 0.01 * std::sin(two_pi * frequency * t + phase);
-      });
+      const Signal signal(2000, 1e-3,
+                          [&](double t) { return 1e3 + 5.0 * t + 0.01 * std::sin(two_pi * frequency * t + phase); });
 
       // 40 periods or more, or half the sampling rate less 40 lines: leakage ~ 1 / (80^3 40) = 5e-8, ten times that
       CHECK(relative_error(dominant_frequency(signal.times, signal.values), frequency) < 5e-7);
@@ -68,8 +68,8 @@ TEST_CASE("the leakage at few periods is what the documentation says")
     largest_10 = std::max(largest_10, error(10.2));
   }
 
-  CHECK(largest_3 < 1e-2);
-  CHECK(largest_10 < 1e-4);
+  CHECK(largest_3 < 4e-3);
+  CHECK(largest_10 < 1e-5);
 }
 
 TEST_CASE("the strongest of several oscillations wins, through noise")
@@ -102,7 +102,8 @@ TEST_CASE("fewer than two periods, a drift, a constant, a parabola and few sampl
 
 TEST_CASE("a shortened last step does not count, any other unequal step is an error")
 {
-  Signal signal(1001, 1e-3, [](double t) { return std::sin(two_pi * 20.0 * t); }, 5.0);
+  Signal signal(
+      1001, 1e-3, [](double t) { return std::sin(two_pi * 20.0 * t); }, 5.0);
   const auto before = dominant_frequency(signal.times, signal.values);
   signal.times.push_back(signal.times.back() + 0.4e-3);
   signal.values.push_back(100.0);
