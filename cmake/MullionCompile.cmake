@@ -11,6 +11,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 add_library(mullion_compile INTERFACE)
 target_compile_options(mullion_compile INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow=local -ffp-contract=off -fno-gnu-unique
+  -Wno-restrict  # g++ 12 is wrong about std::string in several places
   $<$<BOOL:${MULLION_WERROR}>:-Werror>)
 if(MULLION_SANITIZE)
   list(JOIN MULLION_SANITIZE "," sanitizers)

@@ -68,14 +68,6 @@ void print_topology(const Case& value)
 
 } // namespace
 
-void print_diagnostics(const std::string& file, const std::vector<Diagnostic>& diagnostics)
-{
-  for (const auto& diagnostic : diagnostics)
-    fmt::print(stderr, "{}: error: {}\n", diagnostic.place, diagnostic.message);
-  fmt::print(stderr, "mullion: error: {} has {} mistake{}\n", file, diagnostics.size(),
-             diagnostics.size() == 1 ? "" : "s");
-}
-
 int run_check(const Arguments& arguments)
 {
   CommandLine command{
@@ -94,7 +86,7 @@ int run_check(const Arguments& arguments)
   options.all_processes = given->count("processes") != 0;
   const auto result = read_case(file, options);
   if (!result.diagnostics.empty()) {
-    print_diagnostics(file, result.diagnostics);
+    fmt::print(stderr, "{}", describe(file, result.diagnostics));
     return wrong_usage;
   }
   fmt::print("{}: ok\n\n", file);

@@ -29,7 +29,4 @@ int run_modules(const Arguments& arguments); // modules.cpp
 int run_ps(const Arguments& arguments);      // ps.cpp
 int run_stop(const Arguments& arguments);    // stop.cpp
 
-/// All mistakes of a case on standard error, one a line, `place: error: message`, and their number (check.cpp).
-void print_diagnostics(const std::string& file, const std::vector<Diagnostic>& diagnostics);
-
 } // namespace mullion::cli

@@ -105,7 +105,7 @@ void write_mesh(ImageBuilder& image, const std::string& group, const PaneData& p
     image.dataset(path, block.connectivity, {block.n_elements, block.nodes_per_element});
     image.attribute(path, "element", element_names.at(block.element));
   }
-  if (pane.blocks.empty()) {
+  if (pane.n_elements == 0) {
     std::vector<std::int32_t> points(static_cast<std::size_t>(pane.n_nodes));
     for (std::size_t i = 0; i < points.size(); ++i) points[i] = static_cast<std::int32_t>(i);
     image.dataset(group + "/topology", points.data(), {pane.n_nodes, 1});
@@ -219,7 +219,7 @@ void ResultsWriter::begin(const std::vector<WindowData>& windows)
 
 void ResultsWriter::write(std::int64_t step, double time, const std::vector<WindowData>& windows)
 {
-  MULLION_ASSERT(has_begun_, "results of run '{}' written before begin()", run_name_);
+  MULLION_ASSERT(thread_.joinable(), "results of run '{}' written before begin() or after finish()", run_name_);
   const auto& outputs = index_.outputs();
   MULLION_ASSERT(step >= 0 && (outputs.empty() || outputs.back().step < step), "results of step {} after those of {}",
                  step, outputs.empty() ? -1 : outputs.back().step);
@@ -251,8 +251,13 @@ void ResultsWriter::write(std::int64_t step, double time, const std::vector<Wind
   }
   index_.add(step, time, windows);
   is_index_due_ = true;
-  if (Clock::now() >= next_index_)
-    for (auto& file : index_files()) files.push_back(std::move(file));
+  try {
+    if (Clock::now() >= next_index_)
+      for (auto& file : index_files()) files.push_back(std::move(file));
+  } catch (...) {
+    index_.remove_last(); // it was never handed over
+    throw;
+  }
   submit(std::move(files), true);
 }
 
@@ -330,26 +335,30 @@ void ResultsWriter::run_thread()
   }
 }
 
-void ResultsWriter::finish()
+void ResultsWriter::flush()
 {
-  if (!thread_.joinable()) return;
-  std::exception_ptr error;
-  const auto attempt = [&](auto&& action) {
-    try {
-      action();
-    } catch (...) {
-      if (error == nullptr) error = std::current_exception();
-    }
-  };
   const auto wait = [&] {
     std::unique_lock lock(mutex_);
     wait_until_idle(lock);
   };
-  attempt(wait); // a failure here takes the output out of the index
-  attempt([&] {
-    if (is_index_due_) submit(index_files(), false);
-  });
-  attempt(wait);
+  if (!thread_.joinable()) return;
+  wait(); // a failure here takes the output out of the index
+  if (!is_index_due_) return;
+  submit(index_files(), false);
+  wait();
+}
+
+void ResultsWriter::finish()
+{
+  if (!thread_.joinable()) return;
+  std::exception_ptr error;
+  for (int attempt = 0; attempt < 2; ++attempt) // the second writes the index without an output that failed
+    try {
+      flush();
+      break;
+    } catch (...) {
+      if (error == nullptr) error = std::current_exception();
+    }
   {
     const std::lock_guard lock(mutex_);
     is_ending_ = true;

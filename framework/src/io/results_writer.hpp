@@ -32,7 +32,8 @@ public:
   ResultsWriter& operator=(const ResultsWriter&) = delete;
 
   /// After a restart in the same folder: the index goes on from the outputs of earlier attempts before `step`
-  /// whose files are still there. Call before the first write().
+  /// whose files are still there. From the checkpoint of step K: keep_outputs_before(K + 1), as K's output is not
+  /// written again. Call before the first write().
   /// @return how many those are; 0 if there is no index, or not one of ours
   std::size_t keep_outputs_before(std::int64_t step);
 
@@ -45,7 +46,12 @@ public:
   /// @throws Error Errc::io: this output, or the one before, could not be written
   void write(std::int64_t step, double time, const std::vector<WindowData>& windows);
 
-  /// Write the final indices, wait until all is on disk, end the thread.
+  /// Wait until all outputs so far, and indices that name them, are on disk. Call it before a checkpoint becomes
+  /// visible: then a restart from there finds all earlier outputs in the index.
+  /// @throws Error Errc::io: an output or an index could not be written
+  void flush();
+
+  /// flush() and end the thread.
   /// @throws Error Errc::io, once
   void finish();
 

@@ -62,6 +62,10 @@ std::string data_item(std::string_view file, std::string_view dataset, std::stri
 
 std::string topology(const std::string& group, const PaneData& pane)
 {
+  if (pane.n_elements == 0) // a cloud of nodes: each is shown as a point
+    return fmt::format("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\">{}"
+                       "</Topology>\n",
+                       pane.n_nodes, data_item("mesh", group + "/topology", fmt::format("{} 1", pane.n_nodes), false));
   if (pane.blocks.size() == 1) {
     const auto& block = pane.blocks.front();
     const auto& shape = shapes.at(block.element);
@@ -70,10 +74,6 @@ std::string topology(const std::string& group, const PaneData& pane)
                        data_item("mesh", group + "/connectivity_0",
                                  fmt::format("{} {}", block.n_elements, block.nodes_per_element), false));
   }
-  if (pane.blocks.empty()) // a cloud of nodes: each is shown as a point
-    return fmt::format("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\">{}"
-                       "</Topology>\n",
-                       pane.n_nodes, data_item("mesh", group + "/topology", fmt::format("{} 1", pane.n_nodes), false));
   std::int64_t length = 0;
   for (const auto& block : pane.blocks) {
     const int extra = block.element <= MULLION_LINE2 ? 2 : 1; // points and lines say their number of nodes
@@ -83,7 +83,7 @@ std::string topology(const std::string& group, const PaneData& pane)
                      data_item("mesh", group + "/topology", fmt::format("{}", length), false));
 }
 
-/// 1 component: Scalar; 2 and 3: Vector (ParaView 5.8 and later pad two with a zero); more: Matrix.
+/// 1 component: Scalar; 2 and 3: Vector (ParaView 5.11 pads two with a zero); more: Matrix.
 std::string attribute(std::string_view file, const std::string& group, const FieldData& field)
 {
   if (field.entities == 0 || field.components == 0) return "";

@@ -1,5 +1,6 @@
 // How a session comes to life: modules described in the control object, hosts spawned, windows defined and adopted,
 // companions and driver/state made from the driver's wiring, everything attached, the first exchange made.
+#include "config/parameter_table.hpp"
 #include "log/console.hpp"
 #include "run/session.hpp"
 #include "shm/levels.hpp"
@@ -17,21 +18,6 @@ namespace mullion::run {
 using shm::Operation;
 
 namespace {
-
-/// The values of a parameter list as the C boundary wants them. Texts stay where they are.
-std::vector<mullion_value> to_values(const std::vector<ParameterValue>& parameters)
-{
-  std::vector<mullion_value> out;
-  for (const auto& p : parameters) {
-    mullion_value value{0.0, 0, ""};
-    if (const auto* real = std::get_if<double>(&p.value)) value.real = *real;
-    if (const auto* integer = std::get_if<std::int64_t>(&p.value)) value.integer = *integer;
-    if (const auto* flag = std::get_if<bool>(&p.value)) value.integer = *flag ? 1 : 0;
-    if (const auto* text = std::get_if<std::string>(&p.value)) value.text = text->c_str();
-    out.push_back(value);
-  }
-  return out;
-}
 
 std::pair<std::string, std::string> split_window(const std::string& path) // "fluid.wall"
 {
@@ -111,7 +97,7 @@ void Session::describe_modules()
                   shm::max_modules, modules_.size());
   wiring_ = make_wiring();
   const auto& driver_library = catalogue_.open(case_.scheme);
-  const auto values = to_values(case_.driver_parameters);
+  const auto values = config::to_values(case_.driver_parameters);
   const std::unique_ptr<Driver> driver(driver_library.driver().create(values.data()));
   driver->define(*wiring_);
   needs_constant_step_ = wiring_->needs_constant_step;
@@ -142,7 +128,7 @@ void Session::describe_modules()
     MULLION_REQUIRE(module.config->parameters.size() <= shm::max_parameters, Errc::config,
                     "plug-in {} has more than {} parameters", module.config->plugin, shm::max_parameters);
     std::size_t used = 1; // offset 0 is the empty text
-    for (const auto& value : to_values(module.config->parameters)) {
+    for (const auto& value : config::to_values(module.config->parameters)) {
       auto& parameter = record.parameters[record.n_parameters++];
       parameter = {value.real, value.integer, 0, 0};
       const std::size_t length = std::strlen(value.text);
@@ -204,7 +190,7 @@ Wiring Session::make_wiring() const
 
 void Session::make_driver()
 {
-  const auto values = to_values(case_.driver_parameters);
+  const auto values = config::to_values(case_.driver_parameters);
   driver_.reset(catalogue_.open(case_.scheme).driver().create(values.data()));
   auto wiring = make_wiring(); // a driver may look at it in define; the connections are already made
   driver_->define(wiring);
@@ -346,7 +332,7 @@ void Session::make_driver_state()
   for (const auto& state : wiring_->states) {
     shm::FieldPlan field;
     field.name = state.name;
-    field.unit = "1";
+    field.unit.assign(1, '1'); // assign(const char*) here trips g++ 12's -Wrestrict
     field.location = MULLION_PANE;
     field.entities = state.size;
     if (!state.like.empty()) {

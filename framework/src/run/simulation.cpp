@@ -81,7 +81,7 @@ int orchestrate(const RunOptions& options, shm::Control& control, int control_fd
 {
   auto the_case = read_case(options.case_file, options.case_options);
   if (!the_case.diagnostics.empty()) {
-    for (const auto& d : the_case.diagnostics) std::fprintf(stderr, "%s: error: %s\n", d.place.c_str(), d.message.c_str());
+    std::fputs(describe(options.case_file, the_case.diagnostics).c_str(), stderr);
     return 2;
   }
   const Case& c = the_case.value;

@@ -182,6 +182,42 @@ TEST_CASE("a run that goes on in the same folder ends with the index of one that
   CHECK(all_files(parts.path()) == all_files(whole.path()));
 }
 
+TEST_CASE("nodes without elements are shown as points, whether there are blocks or not")
+{
+  const Scratch out;
+  const SmallRun run;
+  const PaneData cloud{7, 1, 3, 0, run.column_x.data(), {}, {}};
+  auto empty_block = cloud;
+  empty_block.id = 8;
+  empty_block.blocks = {{MULLION_LINE2, 2, 0, nullptr}};
+
+  ResultsWriter writer(out.path(), "run");
+  writer.begin({{"probe/points", {cloud, empty_block}}});
+  writer.write(0, 0.0, {{"probe/points", {cloud, empty_block}}});
+  writer.finish();
+
+  const Opened mesh(out / "results/mesh.h5");
+  const auto text = read_text(out / "results.xdmf");
+  for (const std::string pane : {"/probe/points/pane_7", "/probe/points/pane_8"}) {
+    CHECK(mesh->i32(pane + "/topology") == std::vector<std::int32_t>{0, 1, 2});
+    CHECK(text.find("mesh.h5:" + pane + "/topology") != std::string::npos);
+  }
+}
+
+TEST_CASE("after a flush the indices name all outputs so far")
+{
+  const Scratch out;
+  const SmallRun run;
+  ResultsWriter writer(out.path(), "run");
+  writer.begin(run.mesh());
+  for (const std::int64_t step : {1, 2, 3}) writer.write(step, 0.1, run.fields());
+
+  writer.flush();
+
+  CHECK(Opened(out / "results.h5")->i64("/steps") == std::vector<std::int64_t>{1, 2, 3});
+  CHECK(ResultsWriter(out.path(), "run").keep_outputs_before(100) == 3);
+}
+
 TEST_CASE("outputs whose files went away, and an index that is not ours, are not kept")
 {
   const Scratch out;

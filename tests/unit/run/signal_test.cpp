@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <functional>
 #include <limits>
 #include <numbers>
@@ -186,13 +186,18 @@ TEST_CASE("a million samples take less than a second" * doctest::test_suite("ful
 {
   const Signal signal(1000000, 1e-5, [](double t) { return std::exp(0.1 * t) * std::sin(two_pi * 33.3 * t); });
 
-  const auto begin = std::chrono::steady_clock::now();
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  const double limit = 10.0; // sanitizers cost that much
+#else
+  const double limit = 1.0;
+#endif
+  const auto begin = std::clock(); // this process's time: others on the machine do not count
   const auto frequency = dominant_frequency(signal.times, signal.values);
-  const auto middle = std::chrono::steady_clock::now();
+  const auto middle = std::clock();
   const auto growth = growth_rate(signal.times, signal.values, frequency);
-  const auto end = std::chrono::steady_clock::now();
+  const auto end = std::clock();
 
   CHECK(std::abs(growth.sigma - 0.1) < 1e-8);
-  CHECK(std::chrono::duration<double>(middle - begin).count() < 1.0);
-  CHECK(std::chrono::duration<double>(end - middle).count() < 1.0);
+  CHECK(static_cast<double>(middle - begin) / CLOCKS_PER_SEC < limit);
+  CHECK(static_cast<double>(end - middle) / CLOCKS_PER_SEC < limit);
 }

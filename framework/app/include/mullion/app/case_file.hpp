@@ -81,4 +81,7 @@ struct CaseResult {
 };
 CaseResult read_case(const std::string& file, const CaseOptions& options);
 
+/// One line per mistake, "place: error: message", and a last line that counts them.
+std::string describe(const std::string& file, const std::vector<Diagnostic>& diagnostics);
+
 } // namespace mullion
