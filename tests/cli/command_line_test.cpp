@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -114,8 +115,9 @@ TEST_CASE("modules lists what can be used and says why a library was refused")
   const auto result = mullion_command({"modules"});
 
   CHECK(result.exit_code == 0);
-  CHECK(has(result.out, "fluid      trivial_fluid          0.1.0"));
-  CHECK(has(result.out, "driver     exchange               0.1.0"));
+  const auto table = std::regex_replace(result.out, std::regex(" +"), " "); // columns are as wide as they need be
+  CHECK(has(table, "\nfluid trivial_fluid 0.1.0"));
+  CHECK(has(table, "\ndriver exchange 0.1.0"));
   CHECK(!has(result.out, "wrong_abi"));
   for (const char* refused :
        {"wrong_abi.so: built for plug-in ABI 999", "not_a_plugin.so: not a Mullion plug-in",
