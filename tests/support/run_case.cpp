@@ -70,7 +70,6 @@ RunFolder::RunFolder() : shared_memory_before_(shared_memory())
   std::string pattern = "/tmp/mullion-run-XXXXXX"; // short: a socket's path has 107 characters
   if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder " + pattern);
   path_ = pattern;
-  ::setenv(runtime_variable, runtime().c_str(), 1); // for what this process itself asks its runs
 }
 
 RunFolder::~RunFolder()
@@ -148,6 +147,7 @@ std::vector<std::string> RunFolder::new_shared_memory() const
 long long RunFolder::steps_of(const std::string& run_name) const
 {
   if (!fs::exists(runtime() / (run_name + ".sock"))) return -1;
+  ::setenv(runtime_variable, runtime().c_str(), 1); // where ask_run looks
   try {
     return nlohmann::json::parse(process::ask_run(run_name, "status")).at("step").get<long long>();
   } catch (const std::exception&) { // just gone, or not yet listening

@@ -91,6 +91,7 @@ void ModuleRuntime::attach()
   const PhaseGuard guard(*this, Phase::attaching);
   epoch_ = windows_.control().epoch.load(std::memory_order_acquire);
   handles_.clear();
+  list_windows();
   error_ = "failed without saying why";
   require(entries_->attach(instance_));
 }
@@ -100,12 +101,12 @@ void ModuleRuntime::start(const mullion_step& initial)
   const PhaseGuard guard(*this, Phase::starting);
   epoch_ = windows_.control().epoch.load(std::memory_order_acquire);
   invoke(entries_->start, initial);
-  check_finite(own_windows());
+  check_finite(own_windows_);
 }
 
 void ModuleRuntime::seal()
 {
-  for (const auto w : own_windows())
+  for (const auto w : own_windows_)
     shm::seal(windows_.view(w), windows_.control().table(epoch_).windows[w]);
 }
 
@@ -113,7 +114,7 @@ void ModuleRuntime::run(const shm::Request& request, double* results)
 {
   const PhaseGuard guard(*this, Phase::stepping);
   epoch_ = request.epoch;
-  const auto written = windows_written_by(request);
+  const auto& written = windows_written_by(request);
   const auto& table = windows_.control().table(epoch_);
   for (const auto w : written) {
     if ((request.flags & shm::poison) != 0) shm::poison_working(windows_.view(w), table.windows[w]);
@@ -136,25 +137,23 @@ std::uint32_t ModuleRuntime::own_window(const std::string& name) const
   return windows_.control().find_window(fmt::format("{}/{}", record().name, name));
 }
 
-std::vector<std::uint32_t> ModuleRuntime::own_windows() const
+void ModuleRuntime::list_windows()
 {
-  std::vector<std::uint32_t> out;
   const auto& control = windows_.control();
+  own_windows_.clear();
+  function_windows_.assign(entries_->n_functions, {});
   for (std::uint32_t w = 0; w < control.n_windows; ++w)
-    if (control.windows[w].owner == shm::Owner::module && control.windows[w].module == module_) out.push_back(w);
-  return out;
+    if (control.windows[w].owner == shm::Owner::module && control.windows[w].module == module_) own_windows_.push_back(w);
+  for (std::uint32_t f = 0; f < entries_->n_functions; ++f)
+    if (const std::string window = entries_->functions[f].writes; !window.empty())
+      function_windows_[f].push_back(own_window(window)); // it exists: the orchestrator checked that after define
 }
 
-std::vector<std::uint32_t> ModuleRuntime::windows_written_by(const shm::Request& request) const
+const std::vector<std::uint32_t>& ModuleRuntime::windows_written_by(const shm::Request& request) const
 {
-  if (request.operation == shm::Operation::step) return own_windows();
-  MULLION_ASSERT(request.function < entries_->n_functions, "function {}", request.function);
-  const std::string window = entries_->functions[request.function].writes;
-  if (window.empty()) return {};
-  const auto id = own_window(window);
-  MULLION_REQUIRE(id != shm::no_window, Errc::shape, "its function '{}' writes window '{}', which does not exist",
-                  entries_->functions[request.function].name, window);
-  return {id};
+  if (request.operation == shm::Operation::step) return own_windows_;
+  MULLION_ASSERT(request.function < function_windows_.size(), "function {}", request.function);
+  return function_windows_[request.function];
 }
 
 void ModuleRuntime::check_written(const std::vector<std::uint32_t>& windows)

@@ -54,8 +54,8 @@ private:
   void require(std::int32_t status);
   void invoke(std::int32_t (*entry)(void*, const mullion_step*), const mullion_step& step);
   [[nodiscard]] std::uint32_t own_window(const std::string& name) const;
-  [[nodiscard]] std::vector<std::uint32_t> own_windows() const;
-  [[nodiscard]] std::vector<std::uint32_t> windows_written_by(const shm::Request& request) const;
+  void list_windows();
+  [[nodiscard]] const std::vector<std::uint32_t>& windows_written_by(const shm::Request& request) const;
   void check_written(const std::vector<std::uint32_t>& windows);
   void check_finite(const std::vector<std::uint32_t>& windows);
 
@@ -80,6 +80,8 @@ private:
   std::uint64_t epoch_ = 0;
   std::string error_;
   std::vector<Defined> defined_;
+  std::vector<std::uint32_t> own_windows_;                   ///< ids, known from attach on
+  std::vector<std::vector<std::uint32_t>> function_windows_; ///< what each function writes
   std::vector<Handle> handles_;
   std::vector<mullion_block> blocks_; ///< what the last pane service pointed into
 };

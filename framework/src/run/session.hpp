@@ -52,6 +52,9 @@ public:
   void commit(const TimeStep& step);
   /// Fresh processes for all modules in hosts, a new driver object; state comes from the windows.
   void renew();
+  /// After a host died: await what is in flight elsewhere, respawn the dead, attach them and a new driver object.
+  /// @return names of the respawned modules; "" if no host is dead
+  std::string recover();
   /// Ask the hosts to quit; kills what does not.
   void shut_down();
 
@@ -115,6 +118,7 @@ private:
   void make_companions();
   void make_driver_state();
   void make_driver();
+  void attach_again(const std::vector<std::uint32_t>& modules);
   void find_conflicts();
   Wiring make_wiring() const;
 

@@ -73,17 +73,45 @@ void Session::start_fresh()
 
 void Session::renew()
 {
-  const TimeStep at{control_.step.load(), control_.time.load(), control_.time.load(), case_.dt, 0};
-  is_running_ = false;
-  shm::roll_back(control_);
   driver_.reset();
-  for (auto& module : modules_)
-    if (module.host != nullptr) supervisor_.kill(*module.host);
-  for (std::uint32_t m = 0; m < modules_.size(); ++m)
-    if (modules_[m].host != nullptr) spawn(m);
-  call_all(Operation::create, at);
+  std::vector<std::uint32_t> in_hosts;
+  for (std::uint32_t m = 0; m < modules_.size(); ++m) {
+    if (modules_[m].host == nullptr) continue;
+    supervisor_.kill(*modules_[m].host);
+    in_hosts.push_back(m);
+  }
+  attach_again(in_hosts);
+}
+
+std::string Session::recover()
+{
+  std::vector<std::uint32_t> dead;
+  std::string names;
+  for (std::uint32_t m = 0; m < modules_.size(); ++m) {
+    try {
+      await(m);
+    } catch (const Error& error) {
+      log::debug("run", "while recovering: {}", error.what());
+    }
+    if (modules_[m].host == nullptr || !modules_[m].host->is_dead) continue;
+    dead.push_back(m);
+    names += (names.empty() ? "'" : ", '") + modules_[m].config->instance + "'";
+  }
+  if (!dead.empty()) attach_again(dead);
+  return names;
+}
+
+void Session::attach_again(const std::vector<std::uint32_t>& modules)
+{
+  const TimeStep at{control_.step.load(), control_.time.load(), control_.time.load(), case_.dt, 0};
+  is_running_ = false; // the start-up deadline holds
+  shm::roll_back(control_);
+  for (const auto m : modules) spawn(m);
+  for (const auto operation : {Operation::create, Operation::attach}) {
+    for (const auto m : modules) begin(m, operation, 0, at, at.end);
+    for (const auto m : modules) await(m);
+  }
   make_driver();
-  call_all(Operation::attach, at);
   Coupling coupling(this);
   driver_->attach(coupling);
   is_running_ = true;

@@ -51,9 +51,20 @@ std::string run_steps(const RunOptions& options, run::Session& session, process:
   auto& control = session.control();
   run::Progress progress(plan.n_steps());
   run::Audit audit;
-  const auto attempt = [&](const TimeStep& step) {
+  const auto attempt_once = [&](const TimeStep& step) {
     session.begin_attempt();
     session.run_driver(step);
+  };
+  const auto attempt = [&](const TimeStep& step) {
+    try {
+      attempt_once(step);
+    } catch (const Error& error) {
+      if (session.the_case().on_failure != "respawn" || error.code() != Errc::process) throw;
+      const auto respawned = session.recover();
+      if (respawned.empty()) throw;
+      log::warning("run", "{}; respawned {}, step {} is done again from the last commit", error.what(), respawned, step.index);
+      attempt_once(step); // the same failure again ends the run
+    }
   };
   for (std::int64_t n = control.step + 1; n <= plan.n_steps(); ++n) {
     const auto step = plan.step(n);

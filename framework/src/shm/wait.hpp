@@ -21,8 +21,14 @@ void futex_sleep(const Word& word, std::uint32_t value);
 /// Wake all who sleep on the word, in every process.
 void futex_wake(const Word& word);
 
+/// Whether spinning pays at present. On a machine whose cores are busy with others a yield takes a time slice of
+/// theirs, milliseconds, where a wake from the futex takes microseconds: after such a yield this thread's next waits
+/// go to sleep at once.
+bool spinning_pays();
+
 /// One turn of spinning: some pauses, and every few turns a yield. Pass 0, 1, 2, …
-void spin_turn(unsigned turn);
+/// @return false if the yield took so long that the cores are evidently wanted by others
+bool spin_turn(unsigned turn);
 
 /// Wait until is_done() or is_over(); is_over is asked between sleeps and now and then while spinning.
 /// @param word      the word that the peer changes
@@ -31,11 +37,11 @@ void spin_turn(unsigned turn);
 template <class Done, class Over>
 bool wait_for(const Word& word, Word& asleep, bool may_spin, Done&& is_done, Over&& is_over)
 {
-  if (may_spin) {
+  if (may_spin && spinning_pays()) {
     const auto end = std::chrono::steady_clock::now() + spin_time;
     for (unsigned turn = 0;; ++turn) {
       if (is_done()) return true;
-      spin_turn(turn);
+      if (!spin_turn(turn)) break;
       if (turn % 16 == 15) {
         if (is_over()) return is_done();
         if (std::chrono::steady_clock::now() >= end) break;
