@@ -131,7 +131,7 @@ bool read_instance(CaseReader& reader, const Entry& entry)
   const TableOwner owner{fmt::format("[{}]", entry.key), library == nullptr ? "" : *name};
   const auto values = read_parameters(node, owner, specs, other_keys, diagnostics);
   if (library == nullptr) return false;
-  ModuleCase instance{entry.key, library->header().kind, *name, library->path(), false, {}};
+  ModuleCase instance{entry.key, library->header().kind, *name, library->header().version, library->path(), false, {}};
   const bool wants_process = std::get<bool>(values[1].value);
   instance.is_process = reader.options.all_processes || (wants_process && !reader.options.all_inline);
   instance.parameters.assign(values.begin() + n_own, values.end());

@@ -115,7 +115,7 @@ int run_guarded(const Orchestrator& orchestrator)
     sigemptyset(&not_ours);
     for (const int signal : {SIGCONT, SIGCHLD}) sigaddset(&not_ours, signal);
     ::sigprocmask(SIG_UNBLOCK, &not_ours, nullptr);
-    ::signal(SIGPIPE, SIG_IGN);
+    for (const int signal : {SIGPIPE, SIGXFSZ}) ::signal(signal, SIG_IGN); // they become errors with a message
     control.orchestrator_pid = ::getpid();
     const int code = orchestrator(control, object.get());
     std::fflush(stdout);

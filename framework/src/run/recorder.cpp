@@ -12,10 +12,27 @@
 
 namespace mullion::run {
 
+namespace {
+
+/// Result files of an earlier run in this folder: they would stand beside the new ones, unindexed and misleading.
+void remove_old_results(const std::filesystem::path& out)
+{
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  for (const char* name : {"history.csv", "results.xdmf", "results.h5", "post-mortem.txt"}) fs::remove(out / name, ignored);
+  for (const auto& entry : fs::directory_iterator(out / "results", ignored))
+    if (entry.path().extension() == ".h5") fs::remove(entry.path(), ignored);
+  io::remove_stale_temporaries(out);
+  io::remove_stale_temporaries(out / "results");
+}
+
+} // namespace
+
 Recorder::Recorder(const Case& the_case, std::filesystem::path out, shm::Control& control)
     : case_(the_case), out_(std::move(out)), control_(control), begun_(Clock::now())
 {
   io::make_folder(out_);
+  remove_old_results(out_);
   io::write_atomically(out_ / "case.toml", case_.text);
   record_.name = case_.name;
   auto& attempt = record_.attempts.emplace_back();
@@ -23,7 +40,7 @@ Recorder::Recorder(const Case& the_case, std::filesystem::path out, shm::Control
   attempt.start = io::utc_now();
   attempt.driver = case_.scheme;
   for (const auto& module : case_.modules)
-    attempt.modules.push_back({module.instance, module.kind, module.plugin, "", module.is_process});
+    attempt.modules.push_back({module.instance, module.kind, module.plugin, module.version, module.is_process});
   const auto record_file = std::filesystem::absolute(out_ / "run.json").string();
   io::write_run_record(record_file, record_);
   shm::copy_text(control_.outcome_file, sizeof control_.outcome_file, record_file, "path of run.json");
