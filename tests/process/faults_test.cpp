@@ -125,7 +125,7 @@ TEST_CASE("a value that is not finite is named when the call that made it return
       CAPTURE(place.at);
       const test::RunFolder folder;
 
-      const auto result = folder.run(faulty("nan", place.at, {where}));
+      const auto result = folder.run(faulty("not_a_number", place.at, {where}));
 
       // define: the fields that others read are known only later, the first call after that finds it
       test::check_failed(folder, result, 1,
@@ -231,7 +231,7 @@ TEST_CASE("a module's log lines carry its name and their level")
     CAPTURE(result.err);
     CHECK(result.exit_code == 0);
     CHECK(has(result.err, " info structure: the first line of step 7\n"));
-    CHECK(has(result.err, "structure: the second line of step 7\n"));
+    CHECK(has(result.err, " info structure: the second line of step 7\n"));
     CHECK(has(result.err, " warning structure: a warning in step 7\n"));
   }
 }

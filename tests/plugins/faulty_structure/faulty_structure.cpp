@@ -100,7 +100,7 @@ void FaultyStructure::misbehave(const std::string& call, std::int64_t step)
     log().info("the first line of step {}\nthe second line of step {}", step, step);
     return log().warning("a warning in step {}", step);
   }
-  if (fault == "nan") {
+  if (fault == "not_a_number") {
     velocity_.now()(0, 0) = std::numeric_limits<double>::quiet_NaN();
     return;
   }

@@ -20,9 +20,15 @@ public:
   static std::vector<FieldSpec> fields();
   static std::vector<InputSpec> inputs();
 
+  static constexpr auto functions()
+  {
+    return std::tuple{query("scaled", &TrivialStructure::scaled, "twice a number")};
+  }
+
   void define(const TimeStep& initial) override;
   void attach() override;
   void step(const TimeStep& step) override;
+  double scaled(double number) { return 2.0 * number; }
 
 private:
   Options options_;
