@@ -40,7 +40,8 @@ std::string anchor_of(const std::string& heading)
 bool has_anchor(const fs::path& file, const std::string& anchor)
 {
   for (const auto& line : lines_of(fs::relative(file, source_root()).string()))
-    if (line.rfind('#', 0) == 0 && anchor_of(line.substr(std::min(line.find_first_not_of('#') + 1, line.size()))) == anchor)
+    if (line.rfind('#', 0) == 0 &&
+        anchor_of(line.substr(std::min(line.find_first_not_of('#') + 1, line.size()))) == anchor)
       return true;
   return false;
 }
@@ -70,7 +71,8 @@ TEST_CASE("documents, tests and scripts that a text names exist")
     for (const auto& file : sources_under(root)) files.push_back(file);
   for (const auto& file : files)
     for (const auto& name :
-         matches(text_of(file), R"re(\b((?:docs|tests|configs|scripts|framework|examples)/[\w/]*\w\.(?:md|hpp|h|cpp|sh|toml))\b)re"))
+         matches(text_of(file),
+                 R"re(\b((?:docs|tests|configs|scripts|framework|examples)/[\w/]*\w\.(?:md|hpp|h|cpp|sh|toml))\b)re"))
       CHECK_MESSAGE(fs::exists(source_root() / name), file, " names ", name);
 }
 

@@ -24,7 +24,8 @@ std::vector<std::string> compiler_and_flags(const std::string& source)
     std::vector<std::string> command;
     for (std::string word; words >> word;) {
       const bool is_pair = word == "-isystem" || word == "-I";
-      if (command.empty() || word.rfind("-I", 0) == 0 || word.rfind("-std=", 0) == 0 || is_pair) command.push_back(word);
+      if (command.empty() || word.rfind("-I", 0) == 0 || word.rfind("-std=", 0) == 0 || is_pair)
+        command.push_back(word);
       if (is_pair && words >> word) command.push_back(word);
     }
     return command;
@@ -35,9 +36,9 @@ std::vector<std::string> compiler_and_flags(const std::string& source)
 /// What the compiler says of a header that stands alone; "" if it is content.
 std::string complaint(std::vector<std::string> command, const std::string& header, const char* language)
 {
-  for (const std::string& word : {std::string("-fsyntax-only"), std::string("-Wall"), std::string("-Werror"),
-                                  std::string("-include"), (source_root() / header).string(), std::string("-x"),
-                                  std::string(language), std::string("/dev/null")})
+  for (const std::string& word :
+       {std::string("-fsyntax-only"), std::string("-Wall"), std::string("-Werror"), std::string("-include"),
+        (source_root() / header).string(), std::string("-x"), std::string(language), std::string("/dev/null")})
     command.push_back(word);
   const auto result = run_process(command, {.environment = {}, .folder = "", .timeout = std::chrono::seconds(120)});
   return result.exit_code == 0 ? "" : result.err + " ";

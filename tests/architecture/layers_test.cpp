@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
 
 /// Every include of every file is standard or allowed.
-void check_includes(const std::vector<std::string>& files, const std::function<bool(const std::string&, const Include&)>& is_allowed)
+void check_includes(const std::vector<std::string>& files,
+                    const std::function<bool(const std::string&, const Include&)>& is_allowed)
 {
   REQUIRE(!files.empty());
   for (const auto& file : files)
@@ -29,9 +30,8 @@ void check_includes(const std::vector<std::string>& files, const std::function<b
 
 bool is_of(const Include& include, const std::vector<std::string>& folders)
 {
-  return !include.is_quoted && std::any_of(folders.begin(), folders.end(), [&](const auto& folder) {
-    return starts_with(include.name, folder + "/");
-  });
+  return !include.is_quoted && std::any_of(folders.begin(), folders.end(),
+                                           [&](const auto& folder) { return starts_with(include.name, folder + "/"); });
 }
 
 /// "x.hpp" beside the file.
@@ -67,19 +67,22 @@ TEST_CASE("no file of the framework contains the name of a module or a driver")
 
 TEST_CASE("the SDK knows the SDK, fmt and Eigen")
 {
-  check_includes(sources_under("framework/sdk"),
-                 [](const auto&, const Include& i) { return is_of(i, {"mullion/sdk", "fmt", "Eigen"}); });
+  check_includes(sources_under("framework/sdk"), [](const auto&, const Include& i) {
+    return is_of(i, {"mullion/sdk", "fmt", "Eigen"});
+  });
 }
 
 TEST_CASE("the coupling interface knows itself, the SDK and Eigen")
 {
-  check_includes(sources_under("framework/coupling"),
-                 [](const auto&, const Include& i) { return is_of(i, {"mullion/coupling", "mullion/sdk", "Eigen"}); });
+  check_includes(sources_under("framework/coupling"), [](const auto&, const Include& i) {
+    return is_of(i, {"mullion/coupling", "mullion/sdk", "Eigen"});
+  });
 }
 
 TEST_CASE("what the command line sees of the library is plain texts and numbers")
 {
-  check_includes(sources_under("framework/app"), [](const auto&, const Include& i) { return is_of(i, {"mullion/app"}); });
+  check_includes(sources_under("framework/app"),
+                 [](const auto&, const Include& i) { return is_of(i, {"mullion/app"}); });
   check_includes(sources_under("framework/cli"), [](const auto&, const Include& i) {
     if (i.is_quoted) return fs::exists(source_root() / "framework/cli" / i.name);
     return is_of(i, {"mullion/app", "fmt", "boost/program_options"}) || i.name == "mullion/sdk/error.hpp" ||
@@ -118,7 +121,8 @@ TEST_CASE("a kernel knows other kernels and Eigen: neither windows nor case file
   for (const auto& folder : plugin_folders_of_tree())
     if (const auto kernels = kernels_of(folder); !kernels.empty()) {
       is_any = true;
-      check_includes(kernels, [](const auto& file, const Include& i) { return is_beside(file, i) || is_of(i, {"Eigen"}); });
+      check_includes(kernels,
+                     [](const auto& file, const Include& i) { return is_beside(file, i) || is_of(i, {"Eigen"}); });
     }
   CHECK(is_any);
 }
@@ -126,12 +130,13 @@ TEST_CASE("a kernel knows other kernels and Eigen: neither windows nor case file
 TEST_CASE("libraries and plug-ins do not print")
 {
   // Those that talk to the user, and the host, whose standard error the orchestrator reads.
-  const std::vector<std::string> may_print = {"framework/cli/", "framework/src/host/", "framework/src/process/guard.cpp",
-                                              "framework/src/run/simulation.cpp"};
+  const std::vector<std::string> may_print = {"framework/cli/", "framework/src/host/",
+                                              "framework/src/process/guard.cpp", "framework/src/run/simulation.cpp"};
   const std::regex prints(R"re(std::(cout|cerr|clog)\b|\b(v?f?printf|f?puts|putchar|perror)\s*\(|fmt::print\s*\()re");
   for (const char* root : {"framework", "modules", "drivers"})
     for (const auto& file : sources_under(root)) {
-      if (std::any_of(may_print.begin(), may_print.end(), [&](const auto& p) { return starts_with(file, p); })) continue;
+      if (std::any_of(may_print.begin(), may_print.end(), [&](const auto& p) { return starts_with(file, p); }))
+        continue;
       int number = 0;
       for (const auto& line : lines_of(file)) {
         ++number;

@@ -17,7 +17,8 @@ fs::path source_root() { return MULLION_SOURCE_DIR; }
 std::vector<std::string> files_under(const std::string& folder, const std::vector<std::string>& endings)
 {
   std::vector<std::string> files;
-  for (auto it = fs::recursive_directory_iterator(source_root() / folder); it != fs::recursive_directory_iterator(); ++it) {
+  for (auto it = fs::recursive_directory_iterator(source_root() / folder); it != fs::recursive_directory_iterator();
+       ++it) {
     const auto name = it->path().filename().string();
     const bool is_skipped = name.front() == '.' || name.rfind("build", 0) == 0 || name == "out";
     if (it->is_directory() && is_skipped) it.disable_recursion_pending();
@@ -29,7 +30,10 @@ std::vector<std::string> files_under(const std::string& folder, const std::vecto
   return files;
 }
 
-std::vector<std::string> sources_under(const std::string& folder) { return files_under(folder, {".hpp", ".h", ".cpp"}); }
+std::vector<std::string> sources_under(const std::string& folder)
+{
+  return files_under(folder, {".hpp", ".h", ".cpp"});
+}
 
 std::string text_of(const std::string& file)
 {

@@ -57,7 +57,8 @@ std::map<std::string, Layout> documented()
   return layouts;
 }
 
-#define MEMBER(Type, member) Member{#member, offsetof(Type, member), sizeof(Type::member)}
+#define MEMBER(Type, member)                                                                                           \
+  Member { #member, offsetof(Type, member), sizeof(Type::member) }
 
 std::map<std::string, Layout> compiled()
 {
@@ -71,74 +72,68 @@ std::map<std::string, Layout> compiled()
        MEMBER(WindowHeader, fields_offset), MEMBER(WindowHeader, fixed_offset), MEMBER(WindowHeader, fixed_bytes),
        MEMBER(WindowHeader, slots_offset), MEMBER(WindowHeader, slot_bytes), MEMBER(WindowHeader, schema_checksum),
        MEMBER(WindowHeader, name)}};
-  layouts["PaneRecord"] = {
-      sizeof(PaneRecord),
-      {MEMBER(PaneRecord, id), MEMBER(PaneRecord, n_nodes), MEMBER(PaneRecord, n_elements),
-       MEMBER(PaneRecord, coordinates_offset), MEMBER(PaneRecord, first_block), MEMBER(PaneRecord, n_blocks)}};
-  layouts["BlockRecord"] = {
-      sizeof(BlockRecord),
-      {MEMBER(BlockRecord, element), MEMBER(BlockRecord, nodes_per_element), MEMBER(BlockRecord, n_elements),
-       MEMBER(BlockRecord, connectivity_offset)}};
-  layouts["FieldRecord"] = {
-      sizeof(FieldRecord),
-      {MEMBER(FieldRecord, name), MEMBER(FieldRecord, unit), MEMBER(FieldRecord, pane),
-       MEMBER(FieldRecord, location), MEMBER(FieldRecord, components), MEMBER(FieldRecord, role),
-       MEMBER(FieldRecord, nature), MEMBER(FieldRecord, carry), MEMBER(FieldRecord, scalar),
-       MEMBER(FieldRecord, storage), MEMBER(FieldRecord, entities), MEMBER(FieldRecord, offset),
-       MEMBER(FieldRecord, source_window), MEMBER(FieldRecord, source_field), MEMBER(FieldRecord, policy),
-       MEMBER(FieldRecord, reserved)}};
-  layouts["Control"] = {
-      sizeof(Control),
-      {MEMBER(Control, magic), MEMBER(Control, version), MEMBER(Control, bytes), MEMBER(Control, run_name),
-       MEMBER(Control, guard_pid), MEMBER(Control, orchestrator_pid), MEMBER(Control, state),
-       MEMBER(Control, n_modules), MEMBER(Control, n_windows), MEMBER(Control, replay), MEMBER(Control, step),
-       MEMBER(Control, n_steps), MEMBER(Control, time), MEMBER(Control, current), MEMBER(Control, outcome_file),
-       MEMBER(Control, orchestrator_asleep), MEMBER(Control, epoch), MEMBER(Control, directory_version),
-       MEMBER(Control, levels), MEMBER(Control, working), MEMBER(Control, windows), MEMBER(Control, modules)}};
+  layouts["PaneRecord"] = {sizeof(PaneRecord),
+                           {MEMBER(PaneRecord, id), MEMBER(PaneRecord, n_nodes), MEMBER(PaneRecord, n_elements),
+                            MEMBER(PaneRecord, coordinates_offset), MEMBER(PaneRecord, first_block),
+                            MEMBER(PaneRecord, n_blocks)}};
+  layouts["BlockRecord"] = {sizeof(BlockRecord),
+                            {MEMBER(BlockRecord, element), MEMBER(BlockRecord, nodes_per_element),
+                             MEMBER(BlockRecord, n_elements), MEMBER(BlockRecord, connectivity_offset)}};
+  layouts["FieldRecord"] = {sizeof(FieldRecord),
+                            {MEMBER(FieldRecord, name), MEMBER(FieldRecord, unit), MEMBER(FieldRecord, pane),
+                             MEMBER(FieldRecord, location), MEMBER(FieldRecord, components), MEMBER(FieldRecord, role),
+                             MEMBER(FieldRecord, nature), MEMBER(FieldRecord, carry), MEMBER(FieldRecord, scalar),
+                             MEMBER(FieldRecord, storage), MEMBER(FieldRecord, entities), MEMBER(FieldRecord, offset),
+                             MEMBER(FieldRecord, source_window), MEMBER(FieldRecord, source_field),
+                             MEMBER(FieldRecord, policy), MEMBER(FieldRecord, reserved)}};
+  layouts["Control"] = {sizeof(Control), {MEMBER(Control, magic),        MEMBER(Control, version),
+                                          MEMBER(Control, bytes),        MEMBER(Control, run_name),
+                                          MEMBER(Control, guard_pid),    MEMBER(Control, orchestrator_pid),
+                                          MEMBER(Control, state),        MEMBER(Control, n_modules),
+                                          MEMBER(Control, n_windows),    MEMBER(Control, replay),
+                                          MEMBER(Control, step),         MEMBER(Control, n_steps),
+                                          MEMBER(Control, time),         MEMBER(Control, current),
+                                          MEMBER(Control, outcome_file), MEMBER(Control, orchestrator_asleep),
+                                          MEMBER(Control, epoch),        MEMBER(Control, directory_version),
+                                          MEMBER(Control, levels),       MEMBER(Control, working),
+                                          MEMBER(Control, windows),      MEMBER(Control, modules)}};
   layouts["LevelEntry"] = {
       sizeof(LevelEntry),
       {MEMBER(LevelEntry, working_slot), MEMBER(LevelEntry, n_slots), MEMBER(LevelEntry, committed)}};
   layouts["WorkingLevel"] = {
       sizeof(WorkingLevel),
       {MEMBER(WorkingLevel, stamp), MEMBER(WorkingLevel, is_written), MEMBER(WorkingLevel, reserved)}};
-  layouts["WindowRecord"] = {
-      sizeof(WindowRecord),
-      {MEMBER(WindowRecord, name), MEMBER(WindowRecord, owner), MEMBER(WindowRecord, module),
-       MEMBER(WindowRecord, fd), MEMBER(WindowRecord, generation), MEMBER(WindowRecord, bytes)}};
-  layouts["CurrentCall"] = {
-      sizeof(CurrentCall),
-      {MEMBER(CurrentCall, module), MEMBER(CurrentCall, operation), MEMBER(CurrentCall, function),
-       MEMBER(CurrentCall, reserved), MEMBER(CurrentCall, step), MEMBER(CurrentCall, time)}};
+  layouts["WindowRecord"] = {sizeof(WindowRecord),
+                             {MEMBER(WindowRecord, name), MEMBER(WindowRecord, owner), MEMBER(WindowRecord, module),
+                              MEMBER(WindowRecord, fd), MEMBER(WindowRecord, generation), MEMBER(WindowRecord, bytes)}};
+  layouts["CurrentCall"] = {sizeof(CurrentCall),
+                            {MEMBER(CurrentCall, module), MEMBER(CurrentCall, operation), MEMBER(CurrentCall, function),
+                             MEMBER(CurrentCall, reserved), MEMBER(CurrentCall, step), MEMBER(CurrentCall, time)}};
   layouts["ModuleRecord"] = {
       sizeof(ModuleRecord),
-      {MEMBER(ModuleRecord, name), MEMBER(ModuleRecord, kind), MEMBER(ModuleRecord, plugin),
-       MEMBER(ModuleRecord, path), MEMBER(ModuleRecord, is_inline), MEMBER(ModuleRecord, pid),
-       MEMBER(ModuleRecord, reply_fd), MEMBER(ModuleRecord, incarnation), MEMBER(ModuleRecord, n_parameters),
-       MEMBER(ModuleRecord, n_exchanged), MEMBER(ModuleRecord, parameters), MEMBER(ModuleRecord, text),
-       MEMBER(ModuleRecord, exchanged), MEMBER(ModuleRecord, interface_window), MEMBER(ModuleRecord, histories),
-       MEMBER(ModuleRecord, n_histories), MEMBER(ModuleRecord, request)}};
-  layouts["ParameterRecord"] = {
-      sizeof(ParameterRecord),
-      {MEMBER(ParameterRecord, real), MEMBER(ParameterRecord, integer), MEMBER(ParameterRecord, text_offset),
-       MEMBER(ParameterRecord, reserved)}};
-  layouts["Request"] = {
-      sizeof(Request),
-      {MEMBER(Request, word), MEMBER(Request, operation), MEMBER(Request, function), MEMBER(Request, incarnation),
-       MEMBER(Request, epoch), MEMBER(Request, step), MEMBER(Request, flags), MEMBER(Request, reserved),
-       MEMBER(Request, arguments)}};
-  layouts["Reply"] = {
-      sizeof(Reply),
-      {MEMBER(Reply, magic), MEMBER(Reply, incarnation), MEMBER(Reply, reserved), MEMBER(Reply, word),
-       MEMBER(Reply, asleep), MEMBER(Reply, status), MEMBER(Reply, n_windows), MEMBER(Reply, work_ns),
-       MEMBER(Reply, results), MEMBER(Reply, windows), MEMBER(Reply, error)}};
-  layouts["DefinedWindow"] = {
-      sizeof(DefinedWindow),
-      {MEMBER(DefinedWindow, name), MEMBER(DefinedWindow, fd), MEMBER(DefinedWindow, n_slots),
-       MEMBER(DefinedWindow, bytes)}};
-  layouts["Stamp"] = {
-      sizeof(mullion_stamp),
-      {MEMBER(mullion_stamp, time), MEMBER(mullion_stamp, step), MEMBER(mullion_stamp, iteration),
-       MEMBER(mullion_stamp, kind)}};
+      {MEMBER(ModuleRecord, name), MEMBER(ModuleRecord, kind), MEMBER(ModuleRecord, plugin), MEMBER(ModuleRecord, path),
+       MEMBER(ModuleRecord, is_inline), MEMBER(ModuleRecord, pid), MEMBER(ModuleRecord, reply_fd),
+       MEMBER(ModuleRecord, incarnation), MEMBER(ModuleRecord, n_parameters), MEMBER(ModuleRecord, n_exchanged),
+       MEMBER(ModuleRecord, parameters), MEMBER(ModuleRecord, text), MEMBER(ModuleRecord, exchanged),
+       MEMBER(ModuleRecord, interface_window), MEMBER(ModuleRecord, histories), MEMBER(ModuleRecord, n_histories),
+       MEMBER(ModuleRecord, request)}};
+  layouts["ParameterRecord"] = {sizeof(ParameterRecord),
+                                {MEMBER(ParameterRecord, real), MEMBER(ParameterRecord, integer),
+                                 MEMBER(ParameterRecord, text_offset), MEMBER(ParameterRecord, reserved)}};
+  layouts["Request"] = {sizeof(Request),
+                        {MEMBER(Request, word), MEMBER(Request, operation), MEMBER(Request, function),
+                         MEMBER(Request, incarnation), MEMBER(Request, epoch), MEMBER(Request, step),
+                         MEMBER(Request, flags), MEMBER(Request, reserved), MEMBER(Request, arguments)}};
+  layouts["Reply"] = {sizeof(Reply),
+                      {MEMBER(Reply, magic), MEMBER(Reply, incarnation), MEMBER(Reply, reserved), MEMBER(Reply, word),
+                       MEMBER(Reply, asleep), MEMBER(Reply, status), MEMBER(Reply, n_windows), MEMBER(Reply, work_ns),
+                       MEMBER(Reply, results), MEMBER(Reply, windows), MEMBER(Reply, error)}};
+  layouts["DefinedWindow"] = {sizeof(DefinedWindow),
+                              {MEMBER(DefinedWindow, name), MEMBER(DefinedWindow, fd), MEMBER(DefinedWindow, n_slots),
+                               MEMBER(DefinedWindow, bytes)}};
+  layouts["Stamp"] = {sizeof(mullion_stamp),
+                      {MEMBER(mullion_stamp, time), MEMBER(mullion_stamp, step), MEMBER(mullion_stamp, iteration),
+                       MEMBER(mullion_stamp, kind)}};
   return layouts;
 }
 

@@ -22,7 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A program that must succeed.
-ProcessResult succeed(const std::vector<std::string>& command, const std::vector<std::pair<std::string, std::string>>& environment = {})
+ProcessResult succeed(const std::vector<std::string>& command,
+                      const std::vector<std::pair<std::string, std::string>>& environment = {})
 {
   auto result = run_process(command, {.environment = environment, .folder = "", .timeout = std::chrono::minutes(10)});
   REQUIRE_MESSAGE(result.exit_code == 0, command[0], " ", command[1], ": ", result.out, result.err);
@@ -36,7 +37,10 @@ public:
 
   [[nodiscard]] std::string program() const { return (folder_ / "prefix/bin/mullion").string(); }
   [[nodiscard]] fs::path folder() const { return folder_.path(); }
-  [[nodiscard]] bool owns(const std::string& path) const { return path.rfind((folder_ / "prefix").string() + "/", 0) == 0; }
+  [[nodiscard]] bool owns(const std::string& path) const
+  {
+    return path.rfind((folder_ / "prefix").string() + "/", 0) == 0;
+  }
 
   /// Configure and build a project against the installation. @return its build folder
   [[nodiscard]] fs::path build(const fs::path& source, const std::string& name) const
@@ -126,7 +130,8 @@ std::string code_in(const std::string& document, const std::string& name)
 {
   std::ifstream in(fs::path(MULLION_SOURCE_DIR) / document);
   std::string line, code;
-  while (std::getline(in, line) && line != "```cpp file=" + name) {}
+  while (std::getline(in, line) && line != "```cpp file=" + name) {
+  }
   while (std::getline(in, line) && line != "```") code += line + "\n";
   return code;
 }
@@ -164,8 +169,9 @@ TEST_CASE("the example module keeps no state outside its windows")
 {
   const auto plugins = installation().build(fs::path(MULLION_SOURCE_DIR) / "examples/minimal_module", "spring_mass");
   for (const std::vector<std::string>& flags : {std::vector<std::string>{"--replay"}, {"--amnesia", "5"}}) {
-    std::vector<std::string> command = {"run", MULLION_SOURCE_DIR "/examples/minimal_module/piston_on_spring.toml",
-                                        "--set", "run.end_time=0.002", "--out", (installation().folder() / "again").string()};
+    std::vector<std::string> command = {"run",   MULLION_SOURCE_DIR "/examples/minimal_module/piston_on_spring.toml",
+                                        "--set", "run.end_time=0.002",
+                                        "--out", (installation().folder() / "again").string()};
     command.insert(command.end(), flags.begin(), flags.end());
 
     const auto result = installation().mullion(command, plugins);
@@ -187,10 +193,11 @@ TEST_CASE("the driver of the how-to is built against the installation and runs, 
                                               "mullion_add_driver(smoothed_load)\n";
   const auto plugins = installation().build(source, "driver");
 
-  const auto result = installation().mullion(
-      {"run", MULLION_SOURCE_DIR "/configs/closed_piston.toml", "--inline", "--replay", "--set", "driver.scheme=smoothed_load",
-       "--set", "driver.smoothing=0.3", "--set", "run.end_time=0.0005", "--out", (installation().folder() / "driven").string()},
-      plugins);
+  const auto result =
+      installation().mullion({"run", MULLION_SOURCE_DIR "/configs/closed_piston.toml", "--inline", "--replay", "--set",
+                              "driver.scheme=smoothed_load", "--set", "driver.smoothing=0.3", "--set",
+                              "run.end_time=0.0005", "--out", (installation().folder() / "driven").string()},
+                             plugins);
 
   CHECK_MESSAGE(result.exit_code == 0, result.err);
 }

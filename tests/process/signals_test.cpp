@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -37,9 +38,7 @@ void check_stopped(const test::RunFolder& folder, const test::ProcessResult& res
 
 bool are_all(const std::vector<test::RunProcess>& processes, char state)
 {
-  for (const auto& process : processes)
-    if (process.state != state) return false;
-  return true;
+  return std::all_of(processes.begin(), processes.end(), [&](const auto& process) { return process.state == state; });
 }
 
 } // namespace
@@ -131,6 +130,27 @@ TEST_CASE("Ctrl-Z stops every process and the deadlines, and the run goes on as 
   CAPTURE(result.err);
   CHECK(result.exit_code == 0);
   CHECK(test::difference(folder / "out", folder / "clean") == "");
+  test::check_nothing_left(folder);
+}
+
+TEST_CASE("Ctrl-Z stops a run that is busy with short calls as well, again and again")
+{
+  const test::RunFolder folder;
+  const auto run = folder.start(test::long_piston({"run.end_time=1000", "run.call_deadline=0.2"}));
+  for (int i = 0; i < 5; ++i) {
+    REQUIRE(folder.wait_for_step(test::piston_name, 10 * i + 10));
+
+    run->send(SIGTSTP);
+    CHECK(test::wait_until([&] { return are_all(folder.processes(), 'T'); }, 1s));
+    std::this_thread::sleep_for(250ms); // beyond the deadline
+    CHECK(are_all(folder.processes(), 'T'));
+    run->send(SIGCONT);
+  }
+  CHECK(folder.wait_for_step(test::piston_name, 60));
+  run->send(SIGINT);
+
+  const auto result = run->wait();
+  CHECK_MESSAGE(result.exit_code == 0, result.err);
   test::check_nothing_left(folder);
 }
 

@@ -70,7 +70,7 @@ void end_hosts(const shm::Control& control)
   }
 }
 
-/// "module 'fluid' (euler_1d, inline), in step, step 17, t = 0.1 s", or where else the orchestrator was.
+/// "inside module 'fluid' (its plug-in, inline), in step, step 17, t = 0.1 s", or where else the orchestrator was.
 std::string last_call(const shm::Control& control)
 {
   const auto& call = control.current;

@@ -103,38 +103,27 @@ int orchestrate(const RunOptions& options, shm::Control& control, int control_fd
   process::Supervisor supervisor(control, control_fd);
   plugin::Catalogue catalogue;
   run::Recorder recorder(c, out, control);
-  const auto end = [&](const std::string& outcome, const std::string& error) { recorder.finish(outcome, error); };
+  run::Session session(c, catalogue, control, supervisor, {options.replay, options.has_deadlines});
   try {
-    run::Session session(c, catalogue, control, supervisor, {options.replay, options.has_deadlines});
-    try {
-      supervisor.serve(socket, [&](const std::string& line) { return answer(control, supervisor, line); });
-      session.start_fresh();
-      const run::TimePlan plan(c, session.needs_constant_step());
-      control.n_steps = plan.n_steps();
-      control.state = shm::RunState::running;
-      recorder.begin(session);
-      log::info("run", "{}: {} steps of {} s, results in {}", c.name, plan.n_steps(), c.dt, out.string());
-      const auto stopped_by = run_steps(options, session, supervisor, plan, recorder);
-      log::show_progress("");
-      session.shut_down();
-      supervisor.unserve();
-      end(stopped_by.empty() ? "completed" : "stopped", stopped_by);
-      std::fputs(run::summary(recorder, stopped_by).c_str(), stdout);
-      return 0;
-    } catch (const std::exception&) {
-      log::show_progress("");
-      supervisor.unserve();
-      if (const auto text = session.post_mortem(); !text.empty()) {
-        io::make_folder(out);
-        io::write_atomically(out / "post-mortem.txt", text);
-      }
-      throw;
-    }
-  } catch (const Error& error) {
-    end("failed", error.what());
-    throw;
+    supervisor.serve(socket, [&](const std::string& line) { return answer(control, supervisor, line); });
+    session.start_fresh();
+    const run::TimePlan plan(c, session.needs_constant_step());
+    control.n_steps = plan.n_steps();
+    control.state = shm::RunState::running;
+    recorder.begin(session);
+    log::info("run", "{}: {} steps of {} s, results in {}", c.name, plan.n_steps(), c.dt, out.string());
+    const auto stopped_by = run_steps(options, session, supervisor, plan, recorder);
+    log::show_progress("");
+    session.shut_down();
+    supervisor.unserve();
+    recorder.finish(stopped_by.empty() ? "completed" : "stopped", stopped_by);
+    std::fputs(run::summary(recorder, stopped_by).c_str(), stdout);
+    return 0;
   } catch (const std::exception& error) {
-    end("failed", error.what());
+    log::show_progress("");
+    supervisor.unserve();
+    recorder.finish("failed", error.what());
+    if (const auto text = session.post_mortem(); !text.empty()) io::write_atomically(out / "post-mortem.txt", text);
     throw;
   }
 }

@@ -38,8 +38,9 @@ std::string summary(const Recorder& recorder, const std::string& stopped_by)
     const auto& expected = c.expectations[s];
     text += fmt::format("{}\n", series.quantity);
     text += fmt::format("  amplitude  {}\n", beside_expected(amplitude(series.values), expected.amplitude));
-    text += fmt::format("  frequency  {} Hz\n",
-                        beside_expected(dominant_frequency(series.times, series.values), expected.frequency));
+    const double frequency = dominant_frequency(series.times, series.values);
+    text += frequency == 0.0 ? "  frequency  none: fewer than two periods were seen\n"
+                             : fmt::format("  frequency  {} Hz\n", beside_expected(frequency, expected.frequency));
     text += fmt::format("  expected from: {}\n", expected.source);
   }
   text += fmt::format("time          {:<28} {:>10} {:>10} {:>10} {:>7}\n", "", "calls", "work", "waiting", "share");

@@ -36,7 +36,7 @@ public:
           parameter("area", &Options::area, "m^2", "cross-section", above(0.0)),
           parameter("elements", &Options::elements, "1", "number of equal linear elements", at_least(1)),
           parameter("origin", &Options::origin, "m", "where the loaded end lies at rest"),
-          parameter("far_end", &Options::far_end, "", "", one_of("clamped", "free")),
+          parameter("far_end", &Options::far_end, "", "the end that carries no load", one_of("clamped", "free")),
           parameter("integrator", &Options::integrator, "",
                     "newmark (average acceleration, implicit) or central_difference (explicit)",
                     one_of("newmark", "central_difference")),

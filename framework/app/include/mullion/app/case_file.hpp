@@ -19,7 +19,7 @@ struct ParameterValue {
 struct ModuleCase {
   std::string instance;  ///< the table's name: "fluid"
   std::string kind;      ///< from the plug-in: "fluid"
-  std::string plugin;    ///< "euler_1d"
+  std::string plugin;    ///< the name of its library
   std::string version;   ///< of the plug-in
   std::string path;      ///< of the library
   bool is_process = false;

@@ -1,4 +1,4 @@
-// The last line of a plug-in: MULLION_PLUGIN(ElasticBar, "structure", "elastic_bar", "1D elastic bar"). Wraps a
+// The last line of a plug-in: MULLION_PLUGIN(MyBeam, "structure", "my_beam", "a beam of mine");. Wraps a
 // Module class behind the C boundary of abi.h: no exception, vtable or C++ type crosses it.
 //
 // The class brings: struct Options with table() (parameters.hpp), a constructor from Options, static fields() and
