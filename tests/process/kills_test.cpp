@@ -123,6 +123,35 @@ TEST_SUITE("full")
   TEST_CASE("when the guard is killed, everything goes, 25 times") { kill_guards(25); }
 }
 
+TEST_CASE("with on_failure = respawn a killed host is replaced, and the bytes are those of an undisturbed run")
+{
+  const unsigned seed = std::random_device{}();
+  CAPTURE(seed);
+  std::mt19937 random(seed);
+  const test::RunFolder folder;
+  test::run_whole(folder);
+  const auto run = folder.start(test::long_piston({"run.on_failure=respawn"}));
+
+  for (int module = 0; module < 4; ++module) {
+    REQUIRE(folder.wait_for_step(test::piston_name, folder.steps_of(test::piston_name) + 10));
+    std::this_thread::sleep_for(std::chrono::microseconds(std::uniform_int_distribution(0, 5'000)(random)));
+    const auto host = test::find_host(folder, module);
+    ::kill(host, SIGKILL);
+    CHECK(test::wait_until([&] {
+      const auto next = test::find_host(folder, module);
+      return next != 0 && next != host;
+    }));
+  }
+  REQUIRE(folder.wait_for_step(test::piston_name, folder.steps_of(test::piston_name) + 10));
+  run->send(SIGINT);
+  const auto result = run->wait();
+
+  CHECK_MESSAGE(result.exit_code == 0, result.err);
+  for (const char* instance : test::instances) CHECK(has(result.err, std::string("respawned '") + instance + "'"));
+  CHECK(test::difference_of_part(folder / "out", folder / "whole") == "");
+  test::check_nothing_left(folder);
+}
+
 TEST_CASE("a host that was stopped is ended at its deadline")
 {
   for (int module = 0; module < 4; ++module) {

@@ -85,7 +85,13 @@ void initialise(Level level, bool is_terminal)
 
 void write(Level level, std::string_view source, std::string_view text)
 {
-  if (logger != nullptr) logger->log(to_spdlog(level), "{}: {}", source, text);
+  if (logger == nullptr) return;
+  for (;;) { // each line of the text gets the name
+    const auto end = text.find('\n');
+    logger->log(to_spdlog(level), "{}: {}", source, text.substr(0, end));
+    if (end == std::string_view::npos) return;
+    text.remove_prefix(end + 1);
+  }
 }
 
 bool is_terminal() { return sink != nullptr && sink->is_terminal(); }

@@ -79,6 +79,7 @@ std::vector<ModuleRuntime::Defined> ModuleRuntime::define(const mullion_step& in
   }
   shm::LevelEntry levels{};
   for (const auto& window : defined_) {
+    (void)shm::WindowView(window.mapping.data, window.mapping.bytes, window.name); // the module wrote there meanwhile
     levels.n_slots = window.view.header().n_slots;
     shm::seal(window.view, levels);
   }

@@ -32,8 +32,8 @@ sigset_t guard_signals()
 /// Stop with the orchestrator on Ctrl-Z, so that the shell gets its prompt back; go on when it says so.
 void stop_with(pid_t orchestrator)
 {
-  int status = 0;
-  ::waitpid(orchestrator, &status, WUNTRACED | WNOWAIT); // it stops its hosts and then itself
+  siginfo_t info{};
+  ::waitid(P_PID, static_cast<id_t>(orchestrator), &info, WSTOPPED | WEXITED | WNOWAIT); // it stops its hosts, then itself
   ::kill(::getpid(), SIGSTOP);
   ::kill(orchestrator, SIGCONT);
 }
@@ -118,6 +118,7 @@ int run_guarded(const Orchestrator& orchestrator)
     for (const int signal : {SIGPIPE, SIGXFSZ}) ::signal(signal, SIG_IGN); // they become errors with a message
     control.orchestrator_pid = ::getpid();
     const int code = orchestrator(control, object.get());
+    control.state = shm::RunState::done;
     std::fflush(stdout);
     std::fflush(stderr);
     ::_exit(code);
@@ -130,14 +131,20 @@ int run_guarded(const Orchestrator& orchestrator)
   const int status = wait_for_orchestrator(pid);
   end_hosts(seen);
   ::sigprocmask(SIG_SETMASK, &before, nullptr);
-  if (WIFEXITED(status)) return WEXITSTATUS(status);
+  const auto state = seen.state.load();
+  if (WIFEXITED(status) && state == shm::RunState::done) return WEXITSTATUS(status);
 
-  const auto message = fmt::format("run '{}': the orchestrator (process {}) {}, {}", seen.run_name, pid,
-                                   describe_end(status), last_call(seen));
+  const bool is_interrupted = state == shm::RunState::interrupted;
+  const auto message =
+      is_interrupted
+          ? fmt::format("run '{}': ended at once by a second signal, {}; the last rows of history.csv may be missing",
+                        seen.run_name, last_call(seen))
+          : fmt::format("run '{}': the orchestrator (process {}) {}, {}", seen.run_name, pid, describe_end(status),
+                        last_call(seen)); // an exit() comes from a module as well
   std::fprintf(stderr, "%smullion: error: %s\n", ::isatty(STDERR_FILENO) ? "\r\x1b[K" : "", message.c_str());
   try {
     if (seen.run_name[0] != '\0') clean_up(seen.run_name);
-    if (seen.outcome_file[0] != '\0') io::complete_after_crash(seen.outcome_file, "died", message);
+    if (seen.outcome_file[0] != '\0') io::complete_after_crash(seen.outcome_file, is_interrupted ? "interrupted" : "died", message);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "mullion: error: %s\n", error.what());
   }

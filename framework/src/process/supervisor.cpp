@@ -35,6 +35,8 @@ sigset_t handled_signals()
   return set;
 }
 
+std::int64_t now_ns() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
+
 /// A line of a host: a log line if it starts with \1 and a level.
 void log_line(Host& host, const std::string& line)
 {
@@ -318,22 +320,28 @@ void Supervisor::on_signal()
       log::warning("run", "{}: the run ends after the step at hand; once more ends it at once", name);
     } else if (now - first_stop_signal_ > same_request) {
       log::show_progress("");
-      log::error("run", "{} again: ended at once, in step {}, t = {} s; the last rows of history.csv may be missing",
-                 name, control_.step.load() + 1, control_.time.load());
-      for (auto& host : hosts_) ::kill(host->pid, SIGKILL);
-      for (auto& host : hosts_) reap(*host);
-      ::_exit(1);
+      control_.state = shm::RunState::interrupted; // the guard says so, and where
+      ::_exit(1); // the hosts go with us
     }
   }
 }
 
+std::chrono::nanoseconds Supervisor::paused() const
+{
+  // While stopped, and until the lines behind the stop have run, the pause at hand counts as well.
+  const auto begin = pause_begin_ns_.load();
+  return std::chrono::nanoseconds(paused_ns_.load() + (begin == 0 ? 0 : now_ns() - begin));
+}
+
 void Supervisor::pause_all()
 {
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = now_ns();
+  pause_begin_ns_ = begin;
   for (auto& host : hosts_) ::kill(host->pid, SIGSTOP);
-  ::kill(::getpid(), SIGSTOP); // until SIGCONT
-  // The main thread may look at its deadline before this line: it asks again after a wait of at most 5 ms.
-  paused_ns_ += std::chrono::nanoseconds(std::chrono::steady_clock::now() - begin).count();
+  // To this thread, so that the lines behind it run after SIGCONT only; the whole process stops all the same.
+  ::pthread_kill(::pthread_self(), SIGSTOP);
+  paused_ns_ += now_ns() - begin;
+  pause_begin_ns_ = 0;
   for (auto& host : hosts_) ::kill(host->pid, SIGCONT);
 }
 

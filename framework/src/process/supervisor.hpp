@@ -65,7 +65,7 @@ public:
   void request_stop(const std::string& reason);
 
   /// How long the run stood still under Ctrl-Z; deadlines don't count that time.
-  [[nodiscard]] std::chrono::nanoseconds paused() const { return std::chrono::nanoseconds(paused_ns_.load()); }
+  [[nodiscard]] std::chrono::nanoseconds paused() const;
 
   /// Serve the run's socket; `answer` is called in this thread with one line and returns one.
   void serve(RunSocket& socket, std::function<std::string(const std::string&)> answer);
@@ -94,7 +94,7 @@ private:
   mutable std::mutex reason_mutex_;
   std::string reason_;
   std::chrono::steady_clock::time_point first_stop_signal_{};
-  std::atomic<std::int64_t> paused_ns_{0};
+  std::atomic<std::int64_t> paused_ns_{0}, pause_begin_ns_{0}; ///< begin 0: not paused
   RunSocket* socket_ = nullptr; ///< supervisor thread only
   std::function<std::string(const std::string&)> answer_;
   std::thread thread_; ///< last: starts when everything else stands

@@ -129,7 +129,8 @@ struct CurrentCall {
   double time;
 };
 
-enum class RunState : std::uint32_t { starting, running, ending, done };
+/// done: the orchestrator came to its regular end; interrupted: a second signal ended it.
+enum class RunState : std::uint32_t { starting, running, interrupted, done };
 
 struct Control {
   std::uint64_t magic;
