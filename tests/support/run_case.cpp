@@ -184,7 +184,9 @@ bool wait_until(const std::function<bool()>& is_true, std::chrono::milliseconds 
 std::string read_file(const fs::path& file)
 {
   std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::ostringstream text;
+  text << in.rdbuf(); // unlike iterators this does not throw when a process whose /proc file it is ends meanwhile
+  return text.str();
 }
 
 nlohmann::json read_record(const fs::path& results) { return nlohmann::json::parse(read_file(results / "run.json")); }

@@ -5,7 +5,6 @@
 #include "shm/control.hpp"
 #include "shm/window_layout.hpp"
 
-#include <bit>
 #include <optional>
 #include <string>
 
