@@ -34,7 +34,9 @@ void stop_with(pid_t orchestrator)
 {
   siginfo_t info{};
   ::waitid(P_PID, static_cast<id_t>(orchestrator), &info, WSTOPPED | WEXITED | WNOWAIT); // it stops its hosts, then itself
-  ::kill(::getpid(), SIGSTOP);
+  sigset_t pending; // a SIGCONT that came meanwhile would not wake us from a stop after it
+  ::sigpending(&pending);
+  if (::sigismember(&pending, SIGCONT) == 0) ::kill(::getpid(), SIGSTOP);
   ::kill(orchestrator, SIGCONT);
 }
 

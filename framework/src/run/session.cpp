@@ -58,6 +58,7 @@ void Session::begin(std::uint32_t index, Operation operation, std::uint32_t func
   }
   control_.current = {index, operation, function, 0, step.index, step.begin};
   module.in_flight = true;
+  module.paused = supervisor_.paused(); // in this order: a pause in between makes us too patient, not too strict
   module.begun = Clock::now();
   ++n_in_flight_;
 
@@ -129,14 +130,13 @@ void Session::await_host(Module& module)
   const auto number = request.word.load(std::memory_order_relaxed);
   const auto& word = host.reply().word;
   const double deadline = is_running_ ? case_.call_deadline : case_.start_deadline;
-  const auto paused = supervisor_.paused();
   const bool has_deadline = options_.has_deadlines && deadline > 0;
   bool is_late = false;
   const auto is_done = [&] { return word.load(std::memory_order_acquire) == number; };
   const auto is_over = [&] {
     if (host.is_dead.load(std::memory_order_acquire)) return true;
     if (!has_deadline) return false;
-    const auto waited = Clock::now() - module.begun - (supervisor_.paused() - paused);
+    const auto waited = Clock::now() - module.begun - (supervisor_.paused() - module.paused);
     is_late = waited > std::chrono::duration<double>(deadline);
     return is_late;
   };

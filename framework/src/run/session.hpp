@@ -99,6 +99,7 @@ private:
     TimeStep step;
     double stamp = 0.0, result = 0.0;
     Clock::time_point begun;
+    std::chrono::nanoseconds paused{0}; ///< all pauses until then
     std::exception_ptr inline_error;
     std::vector<module::ModuleRuntime::Defined> defined; ///< inline, between define and adoption
     std::int64_t inline_work_ns = 0;

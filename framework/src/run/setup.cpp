@@ -257,9 +257,16 @@ void Session::adopt_windows(std::uint32_t m)
   module.defined.clear();
   if (module.host != nullptr) {
     const auto& reply = module.host->reply();
-    for (std::uint32_t i = 0; i < std::min(reply.n_windows, shm::max_own_windows); ++i)
-      adopt(reply.windows[i].name, shm::adopt_object(module.host->pid, reply.windows[i].fd), reply.windows[i].bytes,
-            reply.windows[i].n_slots);
+    for (std::uint32_t i = 0; i < std::min(reply.n_windows, shm::max_own_windows); ++i) {
+      shm::Descriptor object;
+      try {
+        object = shm::adopt_object(module.host->pid, reply.windows[i].fd);
+      } catch (const Error&) { // it died meanwhile, or it gave us nonsense: then this ends it
+        supervisor_.kill(*module.host);
+        fail(module, Errc::process, process::describe_end(module.host->wait_status));
+      }
+      adopt(reply.windows[i].name, std::move(object), reply.windows[i].bytes, reply.windows[i].n_slots);
+    }
   }
   for (const auto w : module.windows) { // checked here, before anyone believes in them
     try {
