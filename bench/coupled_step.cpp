@@ -51,7 +51,8 @@ double floor_step(std::size_t nodes, long steps)
   const pid_t other = ::fork();
   if (other == 0) {
     for (long s = 0; s < steps; ++s) {
-      while (word->load(std::memory_order_acquire) != 2 * s + 1) {}
+      while (word->load(std::memory_order_acquire) != 2 * s + 1) {
+      }
       echo(a, b, n);
       word->store(2 * s + 2, std::memory_order_release);
     }
@@ -62,7 +63,8 @@ double floor_step(std::size_t nodes, long steps)
     if (s == 1) begin = Clock::now(); // the first touches the pages
     echo(b, a, n);
     word->store(2 * s + 1, std::memory_order_release);
-    while (word->load(std::memory_order_acquire) != 2 * s + 2) {}
+    while (word->load(std::memory_order_acquire) != 2 * s + 2) {
+    }
   }
   const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   ::waitpid(other, nullptr, 0);
@@ -97,8 +99,9 @@ struct Run {
 Run mullion_step(const std::string& case_file, const std::vector<std::string>& sets, long steps, bool with_memory)
 {
   const auto out = fs::temp_directory_path() / fmt::format("mullion-bench-{}", ::getpid());
-  std::vector<std::string> words{MULLION_BUILD_DIR "/bin/mullion", "run", case_file, "--out", out.string(), "--log-level",
-                                 "error", "--set", fmt::format("run.end_time={}.0", steps)};
+  std::vector<std::string> words{
+      MULLION_BUILD_DIR "/bin/mullion",       "run", case_file, "--out", out.string(), "--log-level", "error", "--set",
+      fmt::format("run.end_time={}.0", steps)};
   for (const auto& set : sets) {
     words.emplace_back("--set");
     words.push_back(set);
@@ -163,8 +166,8 @@ int main(int argc, char** argv)
     if (std::strcmp(argv[i], "--largest") == 0) largest = std::atol(argv[i + 1]);
   }
   const auto file = echo_case();
-  fmt::print("{:>9} {:>12} {:>12} {:>8} {:>12} {:>8} {:>16}\n", "nodes", "floor", "two proc.", "/ floor", "inline", "/ floor",
-             "memory - fields");
+  fmt::print("{:>9} {:>12} {:>12} {:>8} {:>12} {:>8} {:>16}\n", "nodes", "floor", "two proc.", "/ floor", "inline",
+             "/ floor", "memory - fields");
   for (const long nodes : {10L, 100L, 1000L, 10'000L, 100'000L, 1'000'000L}) {
     if (nodes > largest) break;
     const long steps = std::clamp(100'000'000L / (3 * nodes + 300), 40L, 100'000L);
@@ -182,17 +185,19 @@ int main(int argc, char** argv)
     // fields: 2 modules x 2 levels x 3 doubles a node, and the reference coordinates and point elements
     const double fields = static_cast<double>(nodes) * (2 * 2 * 24 + 2 * (24 + 4));
     const double memory = mullion_step(file, two, steps * 3, true).pss - fields;
-    fmt::print("{:>9} {:>9.2f} us {:>9.2f} us {:>8.2f} {:>9.2f} us {:>8.2f} {:>13.1f} MB\n", nodes, 1e6 * median(floors),
-               1e6 * median(pairs), median(pair_ratios), 1e6 * median(inlines), median(inline_ratios), memory / 1e6);
+    fmt::print("{:>9} {:>9.2f} us {:>9.2f} us {:>8.2f} {:>9.2f} us {:>8.2f} {:>13.1f} MB\n", nodes,
+               1e6 * median(floors), 1e6 * median(pairs), median(pair_ratios), 1e6 * median(inlines),
+               median(inline_ratios), memory / 1e6);
     std::fflush(stdout);
   }
   fs::remove(file);
   std::vector<double> five;
   for (int r = 0; r < rounds; ++r)
-    five.push_back(mullion_step(MULLION_SOURCE_DIR "/configs/closed_piston.toml",
-                                {"run.dt=6e-6", "run.end_time=0.06", "output.every=0", "output.history=false", "expect=[]"}, 10000,
-                                false)
-                       .step_s);
+    five.push_back(
+        mullion_step(MULLION_SOURCE_DIR "/configs/closed_piston.toml",
+                     {"run.dt=6e-6", "run.end_time=0.06", "output.every=0", "output.history=false", "expect=[]"}, 10000,
+                     false)
+            .step_s);
   fmt::print("\nclosed piston, five processes on {} cores, six calls a step: {:.1f} us a step\n",
              ::sysconf(_SC_NPROCESSORS_ONLN), 1e6 * median(five));
 }

@@ -33,10 +33,11 @@ public:
 
   explicit Css(const Options& options) : options_(options), is_structure_first_(options.order == "structure_first")
   {
-    MULLION_REQUIRE(is_structure_first_ || options.alpha == 0.0, Errc::config,
-                    "alpha = {} has no meaning with order = \"fluid_first\", where the fluid gets the old motion anyway; "
-                    "leave it out",
-                    options.alpha);
+    MULLION_REQUIRE(
+        is_structure_first_ || options.alpha == 0.0, Errc::config,
+        "alpha = {} has no meaning with order = \"fluid_first\", where the fluid gets the old motion anyway; "
+        "leave it out",
+        options.alpha);
   }
 
   void define(Wiring& wiring) override
@@ -71,14 +72,14 @@ private:
     const auto& v = roles_.motion_on_fluid;
     const auto& p = roles_.load_on_structure;
 
-    roles_.structure_load.put(load_.committed(), step.end);                             // P_s^n stands for t^{n+1}
-    roles_.structure.step(step);                                                        // u_s, v_s at n+1
+    roles_.structure_load.put(load_.committed(), step.end); // P_s^n stands for t^{n+1}
+    roles_.structure.step(step);                            // u_s, v_s at n+1
     roles_.transfer_motion(step);
-    roles_.wall_velocity.put((1 - alpha) * v.now() + alpha * v.committed(), step.end);  // v_f^{n+1}
+    roles_.wall_velocity.put((1 - alpha) * v.now() + alpha * v.committed(), step.end); // v_f^{n+1}
     roles_.mesh_motion.step(step);
     roles_.fluid.step(step);
     roles_.transfer_loads(step);
-    load_.now() = (1 - beta) * p.now() + beta * p.committed();                          // P_s^{n+1}
+    load_.now() = (1 - beta) * p.now() + beta * p.committed(); // P_s^{n+1}
   }
 
   void fluid_first(const TimeStep& step)
@@ -86,7 +87,7 @@ private:
     const double beta = options_.beta;
     const auto& p = roles_.load_on_structure;
 
-    roles_.transfer_motion(step);                                                       // v_s^n
+    roles_.transfer_motion(step); // v_s^n
     roles_.wall_velocity.put(roles_.motion_on_fluid.now(), step.end);
     roles_.mesh_motion.step(step);
     roles_.fluid.step(step);

@@ -57,7 +57,8 @@ TEST_CASE("every installed module and driver runs in a case of this test")
   CHECK(installed.size() >= 5);
   for (const auto& plugin : installed) {
     CHECK_MESSAGE(plugin.problem == "", plugin.name);
-    CHECK_MESSAGE(used.contains(plugin.name), "no case of tests/contract/every_plugin_test.cpp runs the plug-in ", plugin.name);
+    CHECK_MESSAGE(used.contains(plugin.name), "no case of tests/contract/every_plugin_test.cpp runs the plug-in ",
+                  plugin.name);
   }
 }
 
@@ -69,11 +70,8 @@ TEST_CASE("every plug-in gives the same bytes inline, in processes, replayed, am
     REQUIRE(folder.run(to_run(c, {"--inline"}, "reference")).exit_code == 0);
     CHECK(test::last_step(folder / "reference") == 40);
 
-    const std::vector<std::vector<std::string>> ways = {{"--processes"},
-                                                        {"--inline", "--replay"},
-                                                        {"--processes", "--replay"},
-                                                        {"--amnesia", "1"},
-                                                        {"--amnesia", "7"}};
+    const std::vector<std::vector<std::string>> ways = {
+        {"--processes"}, {"--inline", "--replay"}, {"--processes", "--replay"}, {"--amnesia", "1"}, {"--amnesia", "7"}};
     for (const auto& flags : ways) {
       CAPTURE(flags[0]);
       CAPTURE(flags.back());

@@ -58,7 +58,8 @@ void check_verdict(const test::ProcessResult& result, const Audited& audited, bo
     return;
   }
   CHECK(result.exit_code == 1);
-  CHECK(has(message_of(result), std::string("done again by ") + audited.how + " differs: " + place + " (component, entity) was "));
+  CHECK(has(message_of(result),
+            std::string("done again by ") + audited.how + " differs: " + place + " (component, entity) was "));
   CHECK(has(message_of(result), culprit + " keeps state outside its windows"));
 }
 
@@ -137,6 +138,7 @@ TEST_CASE("a fixed field that a module writes after all is caught by --replay")
   const auto result = folder.run(replayed);
   CAPTURE(result.err);
   CHECK(result.exit_code == 1);
-  CHECK(has(message_of(result), "step 3 done again by the same instances (--replay) differs: structure/spare.bulk[3, 0]"));
+  CHECK(has(message_of(result),
+            "step 3 done again by the same instances (--replay) differs: structure/spare.bulk[3, 0]"));
   CHECK(has(message_of(result), "module 'structure' (faulty_structure)"));
 }

@@ -41,8 +41,9 @@ constexpr const char* is_inline = "module 'structure' (faulty_structure, inline)
 
 TEST_CASE("an exception in a module, in a process or inline, ends the run with its text and the module's name")
 {
-  for (const auto& [fault, text] : std::map<std::string, std::string>{
-           {"throw", "the fault that the test asked for"}, {"throw_foreign", "threw something that is no std::exception"}})
+  for (const auto& [fault, text] :
+       std::map<std::string, std::string>{{"throw", "the fault that the test asked for"},
+                                          {"throw_foreign", "threw something that is no std::exception"}})
     for (const auto& place : places)
       for (const bool is_process : {true, false}) {
         CAPTURE(fault);
@@ -86,8 +87,9 @@ TEST_CASE("an inline module that takes the orchestrator with it is named by the 
 
       const auto result = folder.run(faulty(fault, place.at, {"--inline"}));
 
-      test::check_failed(folder, result, 1,
-                         {"run 'faulty': the orchestrator (process ", text, std::string("inside ") + is_inline, place.told});
+      test::check_failed(
+          folder, result, 1,
+          {"run 'faulty': the orchestrator (process ", text, std::string("inside ") + is_inline, place.told});
     }
 }
 
@@ -95,8 +97,8 @@ TEST_CASE("an inline module that takes the orchestrator with it takes the other 
 {
   const test::RunFolder folder;
 
-  const auto result = folder.run(test::piston(
-      {"structure.fault=segfault", "structure.at_step=7", "structure.process=false"}));
+  const auto result =
+      folder.run(test::piston({"structure.fault=segfault", "structure.at_step=7", "structure.process=false"}));
 
   test::check_failed(folder, result, 1, {"SIGSEGV", is_inline, "in step, step 7"});
 }
@@ -129,7 +131,8 @@ TEST_CASE("a value that is not finite is named when the call that made it return
 
       // define: the fields that others read are known only later, the first call after that finds it
       test::check_failed(folder, result, 1,
-                         {"module 'structure' (faulty_structure", place.at == "step" ? place.told : "in start, before the first step",
+                         {"module 'structure' (faulty_structure",
+                          place.at == "step" ? place.told : "in start, before the first step",
                           "structure/wet.velocity[0, 0] = nan (component, entity): not a finite number"});
     }
 }

@@ -166,9 +166,10 @@ TEST_CASE("a host that was stopped is ended at its deadline")
 
     CHECK(Clock::now() - stopped >= 500ms);
     CHECK(Clock::now() - stopped < 2s);
-    test::check_failed(folder, result, 1,
-                       {std::string("module '") + test::instances[module] + "' (",
-                        "did not answer within its deadline of 0.5 s (stopped, or in an endless loop?) and was killed"});
+    test::check_failed(
+        folder, result, 1,
+        {std::string("module '") + test::instances[module] + "' (",
+         "did not answer within its deadline of 0.5 s (stopped, or in an endless loop?) and was killed"});
   }
 }
 

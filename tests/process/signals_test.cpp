@@ -47,13 +47,14 @@ TEST_CASE("one signal ends the run at the next step, whichever it is")
 {
   const test::RunFolder folder;
   test::run_whole(folder);
-  for (const auto& [signal, name] : std::vector<std::pair<int, std::string>>{
-           {SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}})
+  for (const auto& [signal, name] :
+       std::vector<std::pair<int, std::string>>{{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}})
     for (const char* where : {"--processes", "--inline"}) {
       CAPTURE(name);
       CAPTURE(where);
       std::filesystem::remove_all(folder / "out");
-      const auto run = folder.start(test::long_piston({"structure.fault=slow", "structure.at_step=20", "structure.duration=0.3"}, {where}));
+      const auto run = folder.start(
+          test::long_piston({"structure.fault=slow", "structure.at_step=20", "structure.duration=0.3"}, {where}));
       REQUIRE(folder.wait_for_step(test::piston_name, 19));
 
       run->send(signal);
@@ -88,8 +89,8 @@ TEST_CASE("a second signal ends the run at once, even within a call that never r
   for (const bool is_process : {true, false}) {
     CAPTURE(is_process);
     std::filesystem::remove_all(folder / "out");
-    const auto run = folder.start(test::long_piston({"structure.fault=hang", "structure.at_step=20"},
-                                                    {is_process ? "--processes" : "--inline"}));
+    const auto run = folder.start(
+        test::long_piston({"structure.fault=hang", "structure.at_step=20"}, {is_process ? "--processes" : "--inline"}));
     REQUIRE(folder.wait_for_step(test::piston_name, 19));
 
     run->send(SIGINT);
@@ -101,9 +102,9 @@ TEST_CASE("a second signal ends the run at once, even within a call that never r
 
     CHECK(has_waited);
     CHECK(is_deserted);
-    test::check_failed(folder, result, 1,
-                       {"run 'faulty': ended at once by a second signal", "module 'structure' (faulty_structure",
-                        "in step, step 20"});
+    test::check_failed(
+        folder, result, 1,
+        {"run 'faulty': ended at once by a second signal", "module 'structure' (faulty_structure", "in step, step 20"});
     CHECK(test::difference_of_part(folder / "out", folder / "whole") == "");
   }
 }
@@ -222,7 +223,8 @@ TEST_CASE("a second run of a live name is refused with the first one's process")
 
   CHECK(second.exit_code == 2);
   CHECK(test::error_messages(second).size() == 1);
-  CHECK(has(second.err, "mullion: error: a run named 'faulty' is alive (process " + std::to_string(run->pid()) + "); "));
+  CHECK(
+      has(second.err, "mullion: error: a run named 'faulty' is alive (process " + std::to_string(run->pid()) + "); "));
   CHECK(!std::filesystem::exists(folder / "again"));
   CHECK(is_first_alive);
   check_stopped(folder, run->wait(), "SIGINT");

@@ -199,7 +199,8 @@ std::string difference(const fs::path& results, const fs::path& expected)
     const auto found = files.find(name);
     if (found == files.end()) return name + " is missing";
     if (found->second == contents) continue;
-    const auto [here, there] = std::mismatch(contents.begin(), contents.end(), found->second.begin(), found->second.end());
+    const auto [here, there] =
+        std::mismatch(contents.begin(), contents.end(), found->second.begin(), found->second.end());
     return name + " differs at byte " + std::to_string(here - contents.begin());
   }
   for (const auto& file : files)

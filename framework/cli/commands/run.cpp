@@ -14,9 +14,9 @@ int run_run(const Arguments& arguments)
   CommandLine command{"mullion run CASE [options]", "Run a case.", {}, "case"};
   command.options.add_options()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                                 "overrule a key of the case, e.g. fluid.cells=200; may be repeated")(
-      "out", po::value<std::string>()->value_name("DIR"), "results folder (default: out/<run name>)")(
-      "inline", "every module inline, whatever the case says")("processes", "every module in a process of its own")(
-      "replay", "do every step twice and compare the bytes")(
+      "out", po::value<std::string>()->value_name("DIR"),
+      "results folder (default: out/<run name>)")("inline", "every module inline, whatever the case says")(
+      "processes", "every module in a process of its own")("replay", "do every step twice and compare the bytes")(
       "amnesia", po::value<int>()->value_name("K"),
       "do every K-th step again with fresh processes and a new driver, and compare the bytes")(
       "no-deadline", "wait for modules for ever (debuggers)")(

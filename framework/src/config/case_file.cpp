@@ -290,7 +290,8 @@ CaseResult read_case(const std::string& file, const CaseOptions& options)
 std::string describe(const std::string& file, const std::vector<Diagnostic>& diagnostics)
 {
   std::string text;
-  for (const auto& diagnostic : diagnostics) text += fmt::format("{}: error: {}\n", diagnostic.place, diagnostic.message);
+  for (const auto& diagnostic : diagnostics)
+    text += fmt::format("{}: error: {}\n", diagnostic.place, diagnostic.message);
   return text + fmt::format("mullion: error: {} has {} mistake{}\n", file, diagnostics.size(),
                             diagnostics.size() == 1 ? "" : "s");
 }

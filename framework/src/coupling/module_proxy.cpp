@@ -46,10 +46,7 @@ void ReceivedField::stamp(double time, std::uint32_t kind) const { session_->sta
 Array DriverField::now() const { return session_->write({window_, field_}); }
 ConstArray DriverField::committed(int back) const { return session_->read({window_, field_}, back); }
 
-ModuleProxy Coupling::module(const std::string& instance) const
-{
-  return {session_, session_->find_module(instance)};
-}
+ModuleProxy Coupling::module(const std::string& instance) const { return {session_, session_->find_module(instance)}; }
 Action Coupling::action(const std::string& instance, const std::string& function) const
 {
   const auto module = session_->find_module(instance);

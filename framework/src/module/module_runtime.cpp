@@ -107,8 +107,7 @@ void ModuleRuntime::start(const mullion_step& initial)
 
 void ModuleRuntime::seal()
 {
-  for (const auto w : own_windows_)
-    shm::seal(windows_.view(w), windows_.control().table(epoch_).windows[w]);
+  for (const auto w : own_windows_) shm::seal(windows_.view(w), windows_.control().table(epoch_).windows[w]);
 }
 
 void ModuleRuntime::run(const shm::Request& request, double* results)
@@ -144,7 +143,8 @@ void ModuleRuntime::list_windows()
   own_windows_.clear();
   function_windows_.assign(entries_->n_functions, {});
   for (std::uint32_t w = 0; w < control.n_windows; ++w)
-    if (control.windows[w].owner == shm::Owner::module && control.windows[w].module == module_) own_windows_.push_back(w);
+    if (control.windows[w].owner == shm::Owner::module && control.windows[w].module == module_)
+      own_windows_.push_back(w);
   for (std::uint32_t f = 0; f < entries_->n_functions; ++f)
     if (const std::string window = entries_->functions[f].writes; !window.empty())
       function_windows_[f].push_back(own_window(window)); // it exists: the orchestrator checked that after define
@@ -256,7 +256,8 @@ void ModuleRuntime::make_window(const char* window, const mullion_pane* panes, s
       plan.n_slots = record().histories[i].n_slots;
 
   bool is_declared = false;
-  for (std::uint32_t i = 0; i < entries_->n_inputs; ++i) is_declared |= !std::strcmp(entries_->inputs[i].window, window);
+  for (std::uint32_t i = 0; i < entries_->n_inputs; ++i)
+    is_declared |= !std::strcmp(entries_->inputs[i].window, window);
   for (std::uint32_t p = 0; p < n_panes; ++p) {
     MULLION_REQUIRE(panes[p].dimension == plan.dimension, Errc::shape, "the panes of window '{}' differ in dimension",
                     window);
@@ -321,7 +322,8 @@ void ModuleRuntime::own_pane(const char* window, std::uint32_t pane, mullion_pan
   } else if (const auto id = own_window(window); id != shm::no_window) {
     view = &windows_.view(id);
   }
-  MULLION_REQUIRE(view != nullptr, Errc::shape, "it asked for the mesh of its window '{}', which does not exist", window);
+  MULLION_REQUIRE(view != nullptr, Errc::shape, "it asked for the mesh of its window '{}', which does not exist",
+                  window);
   MULLION_REQUIRE(pane < view->header().n_panes, Errc::shape, "window '{}' has no pane {}", window, pane);
   *out = view->pane(pane, blocks_);
 }
@@ -391,8 +393,8 @@ void ModuleRuntime::received(std::uint32_t handle, mullion_received* out)
   const auto source = is_bound ? companion.source_window : window;
   const auto& levels = control.table(epoch_).windows[source];
   const auto& working = control.working[source];
-  MULLION_REQUIRE(is_bound || working.is_written != 0, Errc::shape,
-                  "the driver has not written {}.{} in this step", control.windows[window].name, companion.name);
+  MULLION_REQUIRE(is_bound || working.is_written != 0, Errc::shape, "the driver has not written {}.{} in this step",
+                  control.windows[window].name, companion.name);
   out->policy = companion.policy;
   out->n_levels = 0;
   const auto add = [&](int level, const mullion_stamp& stamp) {

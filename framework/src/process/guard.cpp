@@ -33,8 +33,9 @@ sigset_t guard_signals()
 void stop_with(pid_t orchestrator)
 {
   siginfo_t info{};
-  ::waitid(P_PID, static_cast<id_t>(orchestrator), &info, WSTOPPED | WEXITED | WNOWAIT); // it stops its hosts, then itself
-  sigset_t pending; // a SIGCONT that came meanwhile would not wake us from a stop after it
+  ::waitid(P_PID, static_cast<id_t>(orchestrator), &info,
+           WSTOPPED | WEXITED | WNOWAIT); // it stops its hosts, then itself
+  sigset_t pending;                       // a SIGCONT that came meanwhile would not wake us from a stop after it
   ::sigpending(&pending);
   if (::sigismember(&pending, SIGCONT) == 0) ::kill(::getpid(), SIGSTOP);
   ::kill(orchestrator, SIGCONT);
@@ -67,7 +68,8 @@ void end_hosts(const shm::Control& control)
     if (ended > 0) continue;
     if (std::chrono::steady_clock::now() > give_up) return;
     for (std::uint32_t m = 0; m < control.n_modules && m < shm::max_modules; ++m)
-      if (const auto pid = control.modules[m].pid; pid > 0 && ::waitpid(pid, nullptr, WNOHANG) == 0) ::kill(pid, SIGKILL);
+      if (const auto pid = control.modules[m].pid; pid > 0 && ::waitpid(pid, nullptr, WNOHANG) == 0)
+        ::kill(pid, SIGKILL);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
@@ -82,9 +84,10 @@ std::string last_call(const shm::Control& control)
   if (module.is_inline == 0)
     return fmt::format("while module '{}' ({}, process {}) was in {}, step {}, t = {} s", module.name, module.plugin,
                        module.pid, to_string(call.operation), call.step, call.time);
-  return fmt::format("inside module '{}' ({}, inline), in {}, step {}, t = {} s; run it with process = true to keep the "
-                     "others safe from it",
-                     module.name, module.plugin, to_string(call.operation), call.step, call.time);
+  return fmt::format(
+      "inside module '{}' ({}, inline), in {}, step {}, t = {} s; run it with process = true to keep the "
+      "others safe from it",
+      module.name, module.plugin, to_string(call.operation), call.step, call.time);
 }
 
 } // namespace
@@ -146,7 +149,8 @@ int run_guarded(const Orchestrator& orchestrator)
   std::fprintf(stderr, "%smullion: error: %s\n", ::isatty(STDERR_FILENO) ? "\r\x1b[K" : "", message.c_str());
   try {
     if (seen.run_name[0] != '\0') clean_up(seen.run_name);
-    if (seen.outcome_file[0] != '\0') io::complete_after_crash(seen.outcome_file, is_interrupted ? "interrupted" : "died", message);
+    if (seen.outcome_file[0] != '\0')
+      io::complete_after_crash(seen.outcome_file, is_interrupted ? "interrupted" : "died", message);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "mullion: error: %s\n", error.what());
   }

@@ -30,8 +30,8 @@ sockaddr_un address_of(const std::string& path)
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   MULLION_REQUIRE(path.size() < sizeof address.sun_path, Errc::config,
-                  "the socket path '{}' is longer than {} characters; set MULLION_RUNTIME_DIR to a shorter folder", path,
-                  sizeof address.sun_path - 1);
+                  "the socket path '{}' is longer than {} characters; set MULLION_RUNTIME_DIR to a shorter folder",
+                  path, sizeof address.sun_path - 1);
   std::memcpy(address.sun_path, path.data(), path.size());
   return address;
 }
@@ -63,7 +63,8 @@ shm::Descriptor try_lock(const std::string& path, int flags)
     shm::Descriptor lock(::open(path.c_str(), O_RDWR | O_CLOEXEC | flags, 0600));
     if (!lock.is_open() || ::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) return {};
     // A dying run may have unlinked the file between our open and our lock: then this lock protects nothing.
-    struct stat held {}, named {};
+    struct stat held {
+    }, named{};
     ::fstat(lock.get(), &held);
     if (::stat(path.c_str(), &named) == 0 && named.st_ino == held.st_ino) return lock;
     if ((flags & O_CREAT) == 0) return {};
@@ -100,10 +101,11 @@ std::string runtime_folder()
 RunSocket::RunSocket(const std::string& run_name, pid_t pid)
     : path_(socket_path_of(run_name)), lock_path_(lock_path_of(run_name)), lock_(try_lock(lock_path_, O_CREAT))
 {
-  MULLION_REQUIRE(lock_.is_open(), Errc::config,
-                  "a run named '{}' is alive (process {}); wait for it, end it with 'mullion stop {}', or give this one "
-                  "another name with --set run.name=…",
-                  run_name, pid_in(lock_path_), run_name);
+  MULLION_REQUIRE(
+      lock_.is_open(), Errc::config,
+      "a run named '{}' is alive (process {}); wait for it, end it with 'mullion stop {}', or give this one "
+      "another name with --set run.name=…",
+      run_name, pid_in(lock_path_), run_name);
   const auto text = fmt::format("{}\n", pid);
   (void)!::ftruncate(lock_.get(), 0);
   (void)!::write(lock_.get(), text.data(), text.size());
@@ -157,8 +159,8 @@ std::string ask_run(const std::string& run_name, const std::string& line)
   ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVTIMEO, &patience_with_runs, sizeof patience_with_runs);
   ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &patience_with_runs, sizeof patience_with_runs);
   if (::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-    throw Error(Errc::config, fmt::format("no run named '{}' is alive{}", run_name,
-                                          config::suggestion(run_name, live_runs())));
+    throw Error(Errc::config,
+                fmt::format("no run named '{}' is alive{}", run_name, config::suggestion(run_name, live_runs())));
   send_all(socket.get(), line + "\n");
   const auto answer = read_line(socket.get());
   MULLION_REQUIRE(!answer.empty(), Errc::process, "run '{}' did not answer within {} s", run_name,

@@ -70,7 +70,8 @@ bool drain_pipe(Host& host, shm::Descriptor& pipe, std::string& partial)
       start = end + 1;
     }
     partial.erase(0, start);
-    for (; partial.size() > longest_line; partial.erase(0, longest_line)) log_line(host, partial.substr(0, longest_line));
+    for (; partial.size() > longest_line; partial.erase(0, longest_line))
+      log_line(host, partial.substr(0, longest_line));
   }
   if (!partial.empty()) log_line(host, partial);
   partial.clear();
@@ -166,7 +167,7 @@ void Supervisor::loop()
       polled.push_back({host->err.get(), POLLIN, 0});
     }
     if (::poll(polled.data(), polled.size(), -1) < 0) continue; // EINTR
-    const auto polled_hosts = hosts_; // tasks below may change the list
+    const auto polled_hosts = hosts_;                           // tasks below may change the list
     for (std::size_t h = 0; h < polled_hosts.size(); ++h) {
       auto& host = *polled_hosts[h];
       const auto* events = &polled[first_host + 3 * h];
@@ -248,8 +249,8 @@ void Supervisor::start_process(Host& host)
     const int reason = errno;
     ::kill(pid, SIGKILL);
     ::waitpid(pid, nullptr, 0);
-    throw Error(Errc::process, fmt::format("cannot watch the process of module '{}': {}", host.name,
-                                           std::strerror(reason)));
+    throw Error(Errc::process,
+                fmt::format("cannot watch the process of module '{}': {}", host.name, std::strerror(reason)));
   }
 }
 
@@ -262,7 +263,8 @@ void Supervisor::drain(Host& host)
 void Supervisor::reap(Host& host)
 {
   if (host.is_dead) return;
-  while (::waitpid(host.pid, &host.wait_status, 0) < 0 && errno == EINTR) {}
+  while (::waitpid(host.pid, &host.wait_status, 0) < 0 && errno == EINTR) {
+  }
   drain(host);
   host.is_dead.store(true, std::memory_order_release);
   shm::futex_wake(host.reply().word);
@@ -321,7 +323,7 @@ void Supervisor::on_signal()
     } else if (now - first_stop_signal_ > same_request) {
       log::show_progress("");
       control_.state = shm::RunState::interrupted; // the guard says so, and where
-      ::_exit(1); // the hosts go with us
+      ::_exit(1);                                  // the hosts go with us
     }
   }
 }

@@ -95,7 +95,7 @@ private:
   std::string reason_;
   std::chrono::steady_clock::time_point first_stop_signal_{};
   std::atomic<std::int64_t> paused_ns_{0}, pause_begin_ns_{0}; ///< begin 0: not paused
-  RunSocket* socket_ = nullptr; ///< supervisor thread only
+  RunSocket* socket_ = nullptr;                                ///< supervisor thread only
   std::function<std::string(const std::string&)> answer_;
   std::thread thread_; ///< last: starts when everything else stands
 };

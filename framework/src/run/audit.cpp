@@ -43,11 +43,12 @@ void Audit::compare(Session& session, const TimeStep& step, const char* how) con
                                   ? "driver " + session.the_case().scheme
                                   : fmt::format("module '{}' ({})", control.modules[window.module].name,
                                                 control.modules[window.module].plugin);
-    throw Error(Errc::internal,
-                fmt::format("step {} done again by {} differs: {}.{}[{}, {}] (component, entity) was {} and is now {}; {} "
-                            "keeps state outside its windows",
-                            step.index, how, window.name, at.field->name, i % at.field->components,
-                            i / at.field->components, first, second, owner));
+    throw Error(
+        Errc::internal,
+        fmt::format("step {} done again by {} differs: {}.{}[{}, {}] (component, entity) was {} and is now {}; {} "
+                    "keeps state outside its windows",
+                    step.index, how, window.name, at.field->name, i % at.field->components, i / at.field->components,
+                    first, second, owner));
   }
 }
 

@@ -10,7 +10,8 @@ namespace {
 std::string duration_text(double seconds)
 {
   const auto s = static_cast<std::int64_t>(seconds + 0.5);
-  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60) : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60)
+                  : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
 } // namespace
@@ -34,8 +35,8 @@ void Progress::show(const TimeStep& done)
   next_ = now + interval_;
   const double share = static_cast<double>(done.index) / static_cast<double>(n_steps_);
   const double left = static_cast<double>(n_steps_ - done.index) / rate;
-  const auto text = fmt::format("step {}/{}, t = {:.6g} s, {:.4g} steps/s, {} left", done.index, n_steps_, done.end, rate,
-                                duration_text(left));
+  const auto text = fmt::format("step {}/{}, t = {:.6g} s, {:.4g} steps/s, {} left", done.index, n_steps_, done.end,
+                                rate, duration_text(left));
   if (!log::is_terminal()) {
     log::info("run", "{}", text);
     return;

@@ -19,7 +19,8 @@ void remove_old_results(const std::filesystem::path& out)
 {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  for (const char* name : {"history.csv", "results.xdmf", "results.h5", "post-mortem.txt"}) fs::remove(out / name, ignored);
+  for (const char* name : {"history.csv", "results.xdmf", "results.h5", "post-mortem.txt"})
+    fs::remove(out / name, ignored);
   for (const auto& entry : fs::directory_iterator(out / "results", ignored))
     if (entry.path().extension() == ".h5") fs::remove(entry.path(), ignored);
   io::remove_stale_temporaries(out);
@@ -71,7 +72,8 @@ void Recorder::begin(Session& session)
   if (case_.output_every > 0) {
     results_ = std::make_unique<io::ResultsWriter>(out_, case_.name);
     results_->begin(snapshot());
-    for (const char* file : {"results.xdmf", "results.h5", "results/"}) record_.attempts.back().files.emplace_back(file);
+    for (const char* file : {"results.xdmf", "results.h5", "results/"})
+      record_.attempts.back().files.emplace_back(file);
   }
   record({0, case_.start_time, case_.start_time, case_.dt, 0});
   begun_ = Clock::now(); // wall time per step: without the start-up
@@ -93,7 +95,8 @@ void Recorder::choose_columns()
   for (std::uint32_t w = 0; w < control_.n_windows; ++w) {
     if (control_.windows[w].owner != shm::Owner::module) continue;
     const std::string name = control_.windows[w].name;
-    const bool is_interface = std::find(interface_windows.begin(), interface_windows.end(), name) != interface_windows.end();
+    const bool is_interface =
+        std::find(interface_windows.begin(), interface_windows.end(), name) != interface_windows.end();
     const auto fields = session_->windows().view(w).fields();
     for (std::uint32_t f = 0; f < fields.size(); ++f) {
       const auto& field = fields[f];
@@ -105,7 +108,7 @@ void Recorder::choose_columns()
       quantity += fmt::format(".{}", field.name);
       if (session_->windows().view(w).header().n_panes > 1) quantity += fmt::format("[{}]", field.pane);
       for (std::uint32_t c = 0; c < field.components; ++c) {
-        const auto column = field.components == 1 ? quantity
+        const auto column = field.components == 1   ? quantity
                             : field.components <= 3 ? fmt::format("{}_{}", quantity, "xyz"[c])
                                                     : fmt::format("{}_{}", quantity, c);
         if (field.entities == 1) {
@@ -204,7 +207,8 @@ void Recorder::collect_timings()
   double calls = 0.0;
   for (const auto& timing : attempt.timings) calls += timing.wall_s;
   // What is left: the driver's own arithmetic, commits, audits.
-  attempt.timings.push_back({"mullion", "driver and commit", control_.step, attempt.wall_s - calls, attempt.wall_s - calls, 0.0});
+  attempt.timings.push_back(
+      {"mullion", "driver and commit", control_.step, attempt.wall_s - calls, attempt.wall_s - calls, 0.0});
 }
 
 void Recorder::finish(const std::string& outcome, const std::string& error) noexcept

@@ -253,10 +253,11 @@ std::uint32_t Session::find_function(std::uint32_t module, const std::string& na
   for (std::uint32_t f = 0; f < entries.n_functions; ++f) {
     const auto& spec = entries.functions[f];
     if (name != spec.name) continue;
-    MULLION_REQUIRE(spec.n_arguments == n_arguments && spec.n_results == n_results, Errc::config,
-                    "driver {}: function '{}' of module '{}' takes {} numbers and answers {}; the driver expects {} and {}",
-                    case_.scheme, name, modules_[module].config->instance, spec.n_arguments, spec.n_results, n_arguments,
-                    n_results);
+    MULLION_REQUIRE(
+        spec.n_arguments == n_arguments && spec.n_results == n_results, Errc::config,
+        "driver {}: function '{}' of module '{}' takes {} numbers and answers {}; the driver expects {} and {}",
+        case_.scheme, name, modules_[module].config->instance, spec.n_arguments, spec.n_results, n_arguments,
+        n_results);
     return f;
   }
   throw Error(Errc::config, fmt::format("driver {}: module '{}' ({}) offers no function '{}'", case_.scheme,
@@ -271,8 +272,8 @@ FieldAddress Session::find_field(const std::string& port, bool is_received, std:
   const auto window = fmt::format("{}/{}{}", port.substr(0, first), port.substr(first + 1, second - first - 1),
                                   is_received ? ".in" : "");
   const auto id = control_.find_window(window);
-  MULLION_REQUIRE(id != shm::no_window, Errc::config, "driver {}: there is no window {} for the port '{}'", case_.scheme,
-                  window, port);
+  MULLION_REQUIRE(id != shm::no_window, Errc::config, "driver {}: there is no window {} for the port '{}'",
+                  case_.scheme, window, port);
   const int field = windows_.view(id).find_field(pane, port.substr(second + 1));
   MULLION_REQUIRE(field >= 0, Errc::config, "driver {}: window {} has no field '{}' on pane {}", case_.scheme, window,
                   port.substr(second + 1), pane);

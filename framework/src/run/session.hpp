@@ -59,8 +59,8 @@ public:
   void shut_down();
 
   // ---- the driver's side ----
-  void begin(std::uint32_t module, shm::Operation operation, std::uint32_t function, const TimeStep& step,
-             double stamp, const double* arguments = nullptr, std::uint32_t n_arguments = 0);
+  void begin(std::uint32_t module, shm::Operation operation, std::uint32_t function, const TimeStep& step, double stamp,
+             const double* arguments = nullptr, std::uint32_t n_arguments = 0);
   void await(std::uint32_t module);
   [[nodiscard]] double result(std::uint32_t module) const { return modules_[module].result; }
   [[nodiscard]] std::uint32_t find_module(const std::string& instance) const;
@@ -88,10 +88,10 @@ private:
   struct Module {
     const ModuleCase* config = nullptr;
     const mullion_module* entries = nullptr;
-    std::unique_ptr<module::ModuleRuntime> runtime;            ///< inline
-    std::shared_ptr<process::Host> host;                       ///< in a process
-    std::vector<std::uint32_t> windows;                        ///< its own
-    std::vector<std::vector<std::uint32_t>> function_windows;  ///< per function
+    std::unique_ptr<module::ModuleRuntime> runtime;           ///< inline
+    std::shared_ptr<process::Host> host;                      ///< in a process
+    std::vector<std::uint32_t> windows;                       ///< its own
+    std::vector<std::vector<std::uint32_t>> function_windows; ///< per function
     std::uint32_t conflicts = 0; ///< modules that read its windows, or whose windows it reads, in place
     bool in_flight = false;
     shm::Operation operation = shm::Operation::none;
@@ -103,7 +103,7 @@ private:
     std::exception_ptr inline_error;
     std::vector<module::ModuleRuntime::Defined> defined; ///< inline, between define and adoption
     std::int64_t inline_work_ns = 0;
-    std::vector<CallTiming> timings; ///< step, then the functions in their order
+    std::vector<CallTiming> timings;  ///< step, then the functions in their order
     std::set<std::uint32_t> poisoned; ///< windows, in this attempt
   };
 
@@ -113,8 +113,8 @@ private:
   void call_all(shm::Operation operation, const TimeStep& step);
   void call(std::uint32_t module, shm::Operation operation, const TimeStep& step);
   void adopt_windows(std::uint32_t module);
-  std::uint32_t register_window(const std::string& name, shm::Owner owner, std::uint32_t module,
-                                shm::Descriptor object, std::uint64_t bytes, std::uint32_t n_slots);
+  std::uint32_t register_window(const std::string& name, shm::Owner owner, std::uint32_t module, shm::Descriptor object,
+                                std::uint64_t bytes, std::uint32_t n_slots);
   void make_window(const shm::WindowPlan& plan, std::uint32_t module);
   void make_companions();
   void make_driver_state();

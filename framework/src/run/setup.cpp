@@ -229,7 +229,8 @@ void Session::make_driver()
 std::uint32_t Session::register_window(const std::string& name, shm::Owner owner, std::uint32_t module,
                                        shm::Descriptor object, std::uint64_t bytes, std::uint32_t n_slots)
 {
-  MULLION_REQUIRE(control_.n_windows < shm::max_windows, Errc::config, "a run has at most {} windows", shm::max_windows);
+  MULLION_REQUIRE(control_.n_windows < shm::max_windows, Errc::config, "a run has at most {} windows",
+                  shm::max_windows);
   const auto id = control_.n_windows;
   auto& record = control_.windows[id];
   shm::copy_text(record.name, sizeof record.name, name, "window name");
@@ -280,8 +281,10 @@ void Session::adopt_windows(std::uint32_t m)
     auto& windows = module.function_windows.emplace_back();
     if (written.empty()) continue;
     const auto id = control_.find_window(module.config->instance + "/" + written);
-    MULLION_REQUIRE(id != shm::no_window, Errc::shape, "module '{}': its function '{}' writes window '{}', which it did "
-                    "not make", module.config->instance, module.entries->functions[f].name, written);
+    MULLION_REQUIRE(id != shm::no_window, Errc::shape,
+                    "module '{}': its function '{}' writes window '{}', which it did "
+                    "not make",
+                    module.config->instance, module.entries->functions[f].name, written);
     windows.push_back(id);
   }
 }
@@ -306,7 +309,8 @@ void Session::make_companions()
   }
   for (const auto& [parent, connections] : by_window) {
     const auto parent_id = control_.find_window(parent);
-    MULLION_REQUIRE(parent_id != shm::no_window, Errc::config, "driver {}: there is no window {}", case_.scheme, parent);
+    MULLION_REQUIRE(parent_id != shm::no_window, Errc::config, "driver {}: there is no window {}", case_.scheme,
+                    parent);
     const auto& parent_view = windows_.view(parent_id);
     const auto m = control_.windows[parent_id].module;
     shm::WindowPlan plan;
@@ -322,8 +326,8 @@ void Session::make_companions()
           const auto& input = modules_[m].entries->inputs[i];
           if (name == input.name && parent == modules_[m].config->instance + "/" + input.window) spec = &input;
         }
-        MULLION_REQUIRE(spec != nullptr, Errc::config, "driver {}: module '{}' receives no field '{}' on {}", case_.scheme,
-                        modules_[m].config->instance, name, parent);
+        MULLION_REQUIRE(spec != nullptr, Errc::config, "driver {}: module '{}' receives no field '{}' on {}",
+                        case_.scheme, modules_[m].config->instance, name, parent);
         shm::FieldPlan field;
         field.name = name;
         field.unit = spec->unit;
@@ -333,7 +337,9 @@ void Session::make_companions()
         field.role = MULLION_STATE;
         field.nature = spec->nature;
         field.carry = MULLION_OVERWRITE;
-        field.entities = spec->location == MULLION_NODE ? pane.n_nodes : spec->location == MULLION_ELEMENT ? pane.n_elements : 1;
+        field.entities = spec->location == MULLION_NODE      ? pane.n_nodes
+                         : spec->location == MULLION_ELEMENT ? pane.n_elements
+                                                             : 1;
         field.policy = static_cast<std::uint32_t>(connection->policy);
         if (!connection->source.empty()) {
           const auto source = find_field(connection->source, false, p);
@@ -341,8 +347,8 @@ void Session::make_companions()
           MULLION_REQUIRE(record.entities == field.entities && record.components == field.components, Errc::shape,
                           "{} ({} x {}) cannot feed {} ({} x {}): a bound field needs the same shape (components x "
                           "entities); the two meshes differ",
-                          connection->source, record.components, record.entities, connection->receiver, field.components,
-                          field.entities);
+                          connection->source, record.components, record.entities, connection->receiver,
+                          field.components, field.entities);
           field.storage = shm::Storage::bound;
           field.source_window = source.window;
           field.source_field = source.field;

@@ -35,8 +35,8 @@ int exit_code_of(Errc code) { return code == Errc::config || code == Errc::plugi
 std::string answer(shm::Control& control, process::Supervisor& supervisor, const std::string& line)
 {
   if (line == "status")
-    return fmt::format(R"({{"name":"{}","pid":{},"step":{},"steps":{},"time":{}}})", control.run_name, control.guard_pid,
-                       control.step.load(), control.n_steps.load(), control.time.load());
+    return fmt::format(R"({{"name":"{}","pid":{},"step":{},"steps":{},"time":{}}})", control.run_name,
+                       control.guard_pid, control.step.load(), control.n_steps.load(), control.time.load());
   if (line == "stop") {
     supervisor.request_stop("mullion stop");
     return "ok";
@@ -62,7 +62,8 @@ std::string run_steps(const RunOptions& options, run::Session& session, process:
       if (session.the_case().on_failure != "respawn" || error.code() != Errc::process) throw;
       const auto respawned = session.recover();
       if (respawned.empty()) throw;
-      log::warning("run", "{}; respawned {}, step {} is done again from the last commit", error.what(), respawned, step.index);
+      log::warning("run", "{}; respawned {}, step {} is done again from the last commit", error.what(), respawned,
+                   step.index);
       attempt_once(step); // the same failure again ends the run
     }
   };

@@ -18,7 +18,7 @@ std::string beside_expected(double measured, double expected)
 
 std::string duration(double seconds)
 {
-  return seconds < 1e-3 ? fmt::format("{:.1f} us", seconds * 1e6)
+  return seconds < 1e-3  ? fmt::format("{:.1f} us", seconds * 1e6)
          : seconds < 1.0 ? fmt::format("{:.1f} ms", seconds * 1e3)
                          : fmt::format("{:.2f} s", seconds);
 }

@@ -19,10 +19,11 @@ public:
     n_steps_ = static_cast<std::int64_t>(std::ceil(steps - 1e-9)); // a remainder of 1e-9 dt is round-off
     if (n_steps_ < 1) n_steps_ = 1;
     const double remainder = std::abs(start_ + static_cast<double>(n_steps_) * dt_ - end_);
-    MULLION_REQUIRE(!needs_constant_step || remainder <= 1e-9 * dt_, Errc::config,
-                    "driver {} cannot take a shortened step, but run.end_time = {} s is no whole number of steps of {} s; "
-                    "{} s would be",
-                    c.scheme, end_, dt_, start_ + static_cast<double>(n_steps_) * dt_);
+    MULLION_REQUIRE(
+        !needs_constant_step || remainder <= 1e-9 * dt_, Errc::config,
+        "driver {} cannot take a shortened step, but run.end_time = {} s is no whole number of steps of {} s; "
+        "{} s would be",
+        c.scheme, end_, dt_, start_ + static_cast<double>(n_steps_) * dt_);
   }
   [[nodiscard]] std::int64_t n_steps() const { return n_steps_; }
   [[nodiscard]] double time(std::int64_t n) const

@@ -9,11 +9,10 @@ namespace mullion::shm {
 const Control& checked_control(const std::byte* object, std::uint64_t bytes)
 {
   const auto& control = *reinterpret_cast<const Control*>(object);
-  MULLION_REQUIRE(bytes >= sizeof(Control) && control.magic == control_magic &&
-                      control.version == layout_version && control.bytes == sizeof(Control),
-                  Errc::memory,
-                  "the control object is damaged or of another Mullion version ({} bytes, expected {})", bytes,
-                  sizeof(Control));
+  MULLION_REQUIRE(bytes >= sizeof(Control) && control.magic == control_magic && control.version == layout_version &&
+                      control.bytes == sizeof(Control),
+                  Errc::memory, "the control object is damaged or of another Mullion version ({} bytes, expected {})",
+                  bytes, sizeof(Control));
   return control;
 }
 

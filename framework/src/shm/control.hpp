@@ -77,9 +77,9 @@ struct ParameterRecord {
 enum class Operation : std::uint32_t { none, create, define, attach, start, seal, step, call, quit };
 
 enum RequestFlag : std::uint32_t {
-  arm_state = 1,       ///< copy carried state from level -1 (the first act of a step)
-  poison = 2,          ///< fill what is not carried with NaN first (--replay)
-  check_written = 4    ///< afterwards no entry may still hold the poison
+  arm_state = 1,    ///< copy carried state from level -1 (the first act of a step)
+  poison = 2,       ///< fill what is not carried with NaN first (--replay)
+  check_written = 4 ///< afterwards no entry may still hold the poison
 };
 
 /// One call. The word is the last thing written; the host waits on it.

@@ -15,10 +15,7 @@ template <class Body> void for_each_level_field(const WindowView& window, Body&&
     if (static_cast<Storage>(field.storage) == Storage::level) body(field);
 }
 
-bool is_carried(const FieldRecord& field)
-{
-  return field.role == MULLION_STATE && field.carry == MULLION_COPY;
-}
+bool is_carried(const FieldRecord& field) { return field.role == MULLION_STATE && field.carry == MULLION_COPY; }
 
 } // namespace
 

@@ -108,7 +108,8 @@ Descriptor create_object(const std::string& name, std::uint64_t bytes)
   MULLION_REQUIRE(object.is_open(), Errc::memory, "cannot create the memory object '{}': {}", name,
                   std::strerror(errno));
   int status = 0;
-  while ((status = ::posix_fallocate(object.get(), 0, static_cast<off_t>(bytes))) == EINTR) {}
+  while ((status = ::posix_fallocate(object.get(), 0, static_cast<off_t>(bytes))) == EINTR) {
+  }
   MULLION_REQUIRE(status == 0, Errc::memory, "cannot allocate {} for '{}': {}", human_bytes(bytes), name,
                   std::strerror(status));
   MULLION_REQUIRE(::fcntl(object.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) == 0, Errc::memory,

@@ -11,7 +11,6 @@
 
 namespace mullion::shm {
 
-
 inline constexpr std::chrono::microseconds spin_time{100};
 inline constexpr std::chrono::milliseconds longest_sleep{5};
 

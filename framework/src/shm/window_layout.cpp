@@ -75,8 +75,8 @@ Schema make_schema(const WindowPlan& plan)
   for (const auto& pane : plan.panes) {
     MULLION_REQUIRE(pane.n_nodes >= 0 && pane.n_elements >= 0, Errc::shape, "window {}: a pane has {} nodes", plan.name,
                     pane.n_nodes);
-    schema.panes.push_back({pane.id, pane.n_nodes, pane.n_elements, 0,
-                            static_cast<std::uint32_t>(schema.blocks.size()), pane.n_blocks});
+    schema.panes.push_back(
+        {pane.id, pane.n_nodes, pane.n_elements, 0, static_cast<std::uint32_t>(schema.blocks.size()), pane.n_blocks});
     for (std::uint32_t b = 0; b < pane.n_blocks; ++b)
       schema.blocks.push_back({pane.blocks[b].element, pane.blocks[b].nodes_per_element, pane.blocks[b].n_elements, 0});
   }
@@ -102,8 +102,8 @@ Schema make_schema(const WindowPlan& plan)
           fixed.take(static_cast<std::uint64_t>(pane.n_nodes) * plan.dimension, sizeof(double));
     for (std::uint32_t b = 0; b < pane.n_blocks; ++b) {
       auto& block = schema.blocks[schema.panes[p].first_block + b];
-      block.connectivity_offset = fixed.take(
-          static_cast<std::uint64_t>(block.n_elements) * block.nodes_per_element, sizeof(std::int32_t));
+      block.connectivity_offset =
+          fixed.take(static_cast<std::uint64_t>(block.n_elements) * block.nodes_per_element, sizeof(std::int32_t));
     }
   }
   Cursor level(0);
@@ -206,8 +206,8 @@ WindowView::WindowView(std::byte* object, std::uint64_t bytes, std::string_view 
           ::strnlen(h.name, sizeof h.name), expected_name.size());
   object_ = object;
   for (const auto& p : panes()) {
-    require(p.n_nodes >= 0 && p.n_nodes <= INT32_MAX, "a pane's number of nodes",
-            static_cast<std::uint64_t>(p.n_nodes), INT32_MAX);
+    require(p.n_nodes >= 0 && p.n_nodes <= INT32_MAX, "a pane's number of nodes", static_cast<std::uint64_t>(p.n_nodes),
+            INT32_MAX);
     const auto n = static_cast<std::uint64_t>(p.n_nodes) * h.dimension * sizeof(double);
     require(p.coordinates_offset == 0 || inside(p.coordinates_offset, n, h.fixed_offset, fixed_end),
             "a pane's coordinates' offset", p.coordinates_offset, h.fixed_offset);
@@ -235,7 +235,8 @@ WindowView::WindowView(std::byte* object, std::uint64_t bytes, std::string_view 
     require(std::memchr(f.name, 0, sizeof f.name) != nullptr && std::memchr(f.unit, 0, sizeof f.unit) != nullptr,
             "a field name's length", sizeof f.name, sizeof f.name - 1);
     require(f.pane < h.n_panes, "a field's pane", f.pane, h.n_panes);
-    require(f.scalar <= MULLION_I32 && f.storage <= 2 && f.role <= 2 && f.location <= 2, "a field's kind", f.storage, 2);
+    require(f.scalar <= MULLION_I32 && f.storage <= 2 && f.role <= 2 && f.location <= 2, "a field's kind", f.storage,
+            2);
     require(f.components > 0 && f.components <= 4096 && f.entities >= 0 && f.entities <= INT64_C(1) << 40,
             "a field's size", static_cast<std::uint64_t>(f.entities), 1);
     if (static_cast<Storage>(f.storage) == Storage::level)
@@ -277,12 +278,9 @@ mullion_pane WindowView::pane(std::uint32_t index, std::vector<mullion_block>& o
   for (const auto& b : blocks().subspan(record.first_block, record.n_blocks))
     out.push_back({b.element, b.nodes_per_element, b.n_elements,
                    reinterpret_cast<const std::int32_t*>(object_ + b.connectivity_offset)});
-  return {record.id,
-          record.n_nodes,
-          record.n_elements,
-          reinterpret_cast<const double*>(object_ + record.coordinates_offset),
-          out.data(),
-          record.n_blocks,
+  return {record.id,         record.n_nodes,
+          record.n_elements, reinterpret_cast<const double*>(object_ + record.coordinates_offset),
+          out.data(),        record.n_blocks,
           header().dimension};
 }
 

@@ -25,8 +25,8 @@ const WindowView& WindowMap::view(std::uint32_t window)
   if (entry.view.is_valid() && entry.generation == record.generation && entry.is_writable == may_write(record))
     return entry.view;
   entry.is_writable = may_write(record);
-  entry.mapping = map_object(control_.orchestrator_pid, record.fd,
-                             entry.is_writable ? Access::read_write : Access::read_only);
+  entry.mapping =
+      map_object(control_.orchestrator_pid, record.fd, entry.is_writable ? Access::read_write : Access::read_only);
   entry.view = WindowView(entry.mapping.data, entry.mapping.bytes, record.name);
   entry.generation = record.generation;
   return entry.view;

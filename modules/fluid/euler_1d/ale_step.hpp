@@ -33,9 +33,8 @@ public:
 /// Time integrals at the right wall as the Runge-Kutta scheme takes them, for 1 m^2: sums over the
 /// stages of dt b_j (.). They add up over substeps.
 struct WallIntegrals {
-  double impulse = 0.0; ///< of p_w [Pa s]; over the elapsed time it is the mean pressure
-  double work =
-      0.0; ///< of p_w w [J/m^2], positive when the fluid does work: exactly its energy loss there
+  double impulse = 0.0;      ///< of p_w [Pa s]; over the elapsed time it is the mean pressure
+  double work = 0.0;         ///< of p_w w [J/m^2], positive when the fluid does work: exactly its energy loss there
   double swept_volume = 0.0; ///< of w [m]; work - p_ref * swept_volume is the work against p_ref
 
   WallIntegrals& operator+=(const WallIntegrals& other)
@@ -71,8 +70,7 @@ void linear_node_velocities(double wall_velocity, std::span<double> node_velocit
 /// @return                   integrals over this step at the right wall
 /// @pre                      n_cells >= 2 and a sound state (find_bad_cell()); an unsound one gives
 /// an unsound result
-WallIntegrals advance(const State& state, std::span<const double> w_begin,
-                      std::span<const double> w_end, double dt, const AleOptions& options,
-                      Workspace& workspace);
+WallIntegrals advance(const State& state, std::span<const double> w_begin, std::span<const double> w_end, double dt,
+                      const AleOptions& options, Workspace& workspace);
 
 } // namespace mullion::euler_1d

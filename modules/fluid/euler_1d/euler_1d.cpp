@@ -27,7 +27,8 @@ std::vector<FieldSpec> Euler1d::fields()
       output("volume", "total_mass", pane, scalar, "kg", "of all cells"),
       output("volume", "total_energy", pane, scalar, "J", "of all cells"),
       output("wall", "traction", element, vector, "Pa", "(p - p_ref) n_f at the end of the step, n_f out of the fluid"),
-      output("wall", "traction_mean", element, vector, "Pa", "the same, mean over the step as the scheme integrates it"),
+      output("wall", "traction_mean", element, vector, "Pa",
+             "the same, mean over the step as the scheme integrates it"),
       output("wall", "pressure_gradient", element, scalar, "Pa/m", "dp/dn_f at the end of the step"),
       output("wall", "sound_speed", element, scalar, "m/s", "at the end of the step"),
       output("wall", "wall_spacing", element, scalar, "m", "length dx_n of the cell at the wall"),
@@ -101,8 +102,7 @@ void Euler1d::look_up()
 
 State Euler1d::working_state() const
 {
-  return {flat(mass_.now()), flat(momentum_.now()), flat(energy_.now()), flat(length_.now()),
-          flat(coordinates_.now())};
+  return {flat(mass_.now()), flat(momentum_.now()), flat(energy_.now()), flat(length_.now()), flat(coordinates_.now())};
 }
 
 void Euler1d::step(const TimeStep& step)
@@ -122,13 +122,12 @@ void Euler1d::step(const TimeStep& step)
     std::swap(w_begin_, w_end_);
   }
   if (const auto bad = find_bad_cell(state, ale_.gas))
-    throw Error(Errc::numeric, fmt::format("cell {} of {} (x = {} m) has the {} {}; a smaller step or coupling scheme "
-                                           "with less lag may help",
-                                           bad->cell, options_.cells, state.node_x[bad->cell], to_string(bad->fault),
-                                           bad->value));
+    throw Error(Errc::numeric,
+                fmt::format("cell {} of {} (x = {} m) has the {} {}; a smaller step or coupling scheme "
+                            "with less lag may help",
+                            bad->cell, options_.cells, state.node_x[bad->cell], to_string(bad->fault), bad->value));
   const double end_velocity = w_begin_.back(); // after the swap: at the step's end
-  const double wall_velocity =
-      evaluation_velocity_.is_connected() ? evaluation_velocity_.newest()(0, 0) : end_velocity;
+  const double wall_velocity = evaluation_velocity_.is_connected() ? evaluation_velocity_.newest()(0, 0) : end_velocity;
   write_outputs(wall_velocity, wall.impulse / step.dt, wall.work - options_.reference_pressure * wall.swept_volume);
 }
 

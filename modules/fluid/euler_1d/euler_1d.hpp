@@ -72,7 +72,7 @@ private:
 
   Options options_;
   AleOptions ale_;
-  std::optional<Workspace> workspace_; ///< scratch: holds nothing from step to step
+  std::optional<Workspace> workspace_;  ///< scratch: holds nothing from step to step
   std::vector<double> w_begin_, w_end_; ///< scratch
   Field coordinates_, mass_, momentum_, energy_, length_;
   Field density_, velocity_, pressure_, total_mass_, total_energy_;

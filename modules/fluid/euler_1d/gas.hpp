@@ -26,16 +26,10 @@ struct Flux {
 };
 
 /// c = sqrt(gamma p / rho) [m/s]; not-a-number where p / rho < 0, which find_bad_cell() reports.
-inline double sound_speed(const Gas& gas, const Primitive& q)
-{
-  return std::sqrt(gas.gamma * q.pressure / q.density);
-}
+inline double sound_speed(const Gas& gas, const Primitive& q) { return std::sqrt(gas.gamma * q.pressure / q.density); }
 
 /// z = rho c = sqrt(gamma p rho) [Pa s/m].
-inline double impedance(const Gas& gas, const Primitive& q)
-{
-  return std::sqrt(gas.gamma * q.pressure * q.density);
-}
+inline double impedance(const Gas& gas, const Primitive& q) { return std::sqrt(gas.gamma * q.pressure * q.density); }
 
 /// rho E = p / (gamma - 1) + rho u^2 / 2 [J/m^3].
 inline double energy_density(const Gas& gas, const Primitive& q)
@@ -48,8 +42,7 @@ inline Flux physical_flux(const Gas& gas, const Primitive& q, double w)
 {
   const double through = q.velocity - w;
   const double mass = q.density * through;
-  return {mass, mass * q.velocity + q.pressure,
-          energy_density(gas, q) * through + q.pressure * q.velocity};
+  return {mass, mass * q.velocity + q.pressure, energy_density(gas, q) * through + q.pressure * q.velocity};
 }
 
 } // namespace mullion::euler_1d

@@ -18,8 +18,7 @@ void set_equal_cells(const State& state, double x_left, double x_right)
 
 void set_uniform(const State& state, const Gas& gas, const Primitive& value)
 {
-  for (std::size_t i = 0; i < state.n_cells(); ++i)
-    set_cell(state, gas, i, value);
+  for (std::size_t i = 0; i < state.n_cells(); ++i) set_cell(state, gas, i, value);
 }
 
 void set_rest(const State& state, const Gas& gas, const Reference& reference, double length)
@@ -28,8 +27,8 @@ void set_rest(const State& state, const Gas& gas, const Reference& reference, do
   set_uniform(state, gas, {reference.density, 0.0, reference.pressure});
 }
 
-void set_acoustic_mode(const State& state, const Gas& gas, const Reference& reference,
-                       const AcousticMode& mode, double time, double wall_x)
+void set_acoustic_mode(const State& state, const Gas& gas, const Reference& reference, const AcousticMode& mode,
+                       double time, double wall_x)
 {
   set_equal_cells(state, 0.0, wall_x);
   const Primitive rest{reference.density, 0.0, reference.pressure};
@@ -40,8 +39,8 @@ void set_acoustic_mode(const State& state, const Gas& gas, const Reference& refe
     const double centre = 0.5 * (state.node_x[i] + state.node_x[i + 1]);
     const double half = 0.5 * k * state.length[i];
     const double mean = std::sin(half) / half; // k > 0 and length > 0: see the preconditions
-    const double p = reference.pressure - impedance(gas, rest) * scale * mean *
-                                              std::cos(k * centre) * std::cos(omega * time);
+    const double p =
+        reference.pressure - impedance(gas, rest) * scale * mean * std::cos(k * centre) * std::cos(omega * time);
     const double u = -scale * mean * std::sin(k * centre) * std::sin(omega * time);
     const double rho = reference.density * std::pow(p / reference.pressure, 1.0 / gas.gamma);
     set_cell(state, gas, i, {rho, u, p});

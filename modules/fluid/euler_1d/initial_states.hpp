@@ -40,7 +40,7 @@ struct AcousticMode {
 /// @param wall_x  right end of the mesh [m]; collocated L_f + A, independent of `time` as the mesh
 /// may live at another
 /// @pre           wall_x > 0, sin(k L_f) != 0, and omega A much smaller than c (linear theory)
-void set_acoustic_mode(const State& state, const Gas& gas, const Reference& reference,
-                       const AcousticMode& mode, double time, double wall_x);
+void set_acoustic_mode(const State& state, const Gas& gas, const Reference& reference, const AcousticMode& mode,
+                       double time, double wall_x);
 
 } // namespace mullion::euler_1d

@@ -27,13 +27,11 @@ struct Reference {
 ///
 /// @param q  fluid state at the face
 /// @param w  velocity of the face [m/s]; it decides between inflow and outflow
-[[nodiscard]] Primitive open_end_state(const Gas& gas, const Reference& outside, const Primitive& q,
-                                       double w);
+[[nodiscard]] Primitive open_end_state(const Gas& gas, const Reference& outside, const Primitive& q, double w);
 
 /// Flux through the left face, along +x, relative to the face that moves with w.
 ///
 /// Closed: (0, p_w, p_w w) with p_w = p - sqrt(gamma p rho) (u - w). Open: F(U_b) - w U_b.
-[[nodiscard]] Flux left_end_flux(const Gas& gas, LeftEnd kind, const Reference& outside,
-                                 const Primitive& q, double w);
+[[nodiscard]] Flux left_end_flux(const Gas& gas, LeftEnd kind, const Reference& outside, const Primitive& q, double w);
 
 } // namespace mullion::euler_1d

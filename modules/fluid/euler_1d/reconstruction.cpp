@@ -9,21 +9,16 @@ namespace {
 
 double limited(double a, double b, Limiter limiter)
 {
-  if (limiter == Limiter::none)
-    return 0.5 * (a + b);
+  if (limiter == Limiter::none) return 0.5 * (a + b);
   const double product = a * b;
   return product > 0.0 ? product * (a + b) / (a * a + b * b) : 0.0; // a b > 0: the quotient exists
 }
 
-double extrapolated(double end, double neighbour, double fraction)
-{
-  return end + (end - neighbour) * fraction;
-}
+double extrapolated(double end, double neighbour, double fraction) { return end + (end - neighbour) * fraction; }
 
 } // namespace
 
-Primitive end_value(const Primitive& end_cell, double end_length, const Primitive& neighbour,
-                    double neighbour_length)
+Primitive end_value(const Primitive& end_cell, double end_length, const Primitive& neighbour, double neighbour_length)
 {
   const double fraction = end_length / (end_length + neighbour_length);
   return {extrapolated(end_cell.density, neighbour.density, fraction),
@@ -57,8 +52,7 @@ void reconstruct(std::span<const Primitive> cells, std::span<const double> lengt
 
   // End cells: the outer face by extrapolation, the inner face by the mirror image of the same
   // slope.
-  const auto end_cell = [&](std::size_t e, std::size_t neighbour, Primitive& outer,
-                            Primitive& inner) {
+  const auto end_cell = [&](std::size_t e, std::size_t neighbour, Primitive& outer, Primitive& inner) {
     const Primitive& q = cells[e];
     outer = end_value(q, length[e], cells[neighbour], length[neighbour]);
     inner = {q.density - (outer.density - q.density), q.velocity - (outer.velocity - q.velocity),

@@ -31,7 +31,7 @@ void reconstruct(std::span<const Primitive> cells, std::span<const double> lengt
 
 /// Value at the outer face of an end cell from it and its neighbour: q_e + (q_e - q_n) L_e / (L_e +
 /// L_n), on equal cells 1.5 q_e - 0.5 q_n. The same bits as reconstruct() gives there.
-[[nodiscard]] Primitive end_value(const Primitive& end_cell, double end_length,
-                                  const Primitive& neighbour, double neighbour_length);
+[[nodiscard]] Primitive end_value(const Primitive& end_cell, double end_length, const Primitive& neighbour,
+                                  double neighbour_length);
 
 } // namespace mullion::euler_1d

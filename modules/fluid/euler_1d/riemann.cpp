@@ -22,8 +22,7 @@ Speeds outer_speeds(const Gas& gas, const Primitive& l, const Primitive& r)
   const double u = (weight_l * l.velocity + weight_r * r.velocity) / sum;
   const double enthalpy = (weight_l * enthalpy_l + weight_r * enthalpy_r) / sum;
   const double c = std::sqrt((gas.gamma - 1.0) * (enthalpy - 0.5 * u * u));
-  return {std::min(l.velocity - sound_speed(gas, l), u - c),
-          std::max(r.velocity + sound_speed(gas, r), u + c)};
+  return {std::min(l.velocity - sound_speed(gas, l), u - c), std::max(r.velocity + sound_speed(gas, r), u + c)};
 }
 
 // Flux of the star state on one side (outer wave s, contact s_star), relative to the face.
@@ -32,11 +31,9 @@ Flux star_flux(const Gas& gas, const Primitive& q, double s, double s_star, doub
   const double density = q.density * (s - q.velocity) / (s - s_star);
   const double pressure = q.pressure + q.density * (s - q.velocity) * (s_star - q.velocity);
   const double energy =
-      (energy_density(gas, q) * (s - q.velocity) - q.pressure * q.velocity + pressure * s_star) /
-      (s - s_star);
+      (energy_density(gas, q) * (s - q.velocity) - q.pressure * q.velocity + pressure * s_star) / (s - s_star);
   const double through = s_star - w;
-  return {density * through, density * through * s_star + pressure,
-          energy * through + pressure * s_star};
+  return {density * through, density * through * s_star + pressure, energy * through + pressure * s_star};
 }
 
 } // namespace
@@ -44,16 +41,13 @@ Flux star_flux(const Gas& gas, const Primitive& q, double s, double s_star, doub
 Flux hllc_flux(const Gas& gas, const Primitive& left, const Primitive& right, double w)
 {
   const auto [s_l, s_r] = outer_speeds(gas, left, right);
-  if (w <= s_l)
-    return physical_flux(gas, left, w);
-  if (w >= s_r)
-    return physical_flux(gas, right, w);
+  if (w <= s_l) return physical_flux(gas, left, w);
+  if (w >= s_r) return physical_flux(gas, right, w);
 
   const double mass_l = left.density * (s_l - left.velocity);   // < 0
   const double mass_r = right.density * (s_r - right.velocity); // > 0, so the quotient exists
   const double s_star =
-      (right.pressure - left.pressure + left.velocity * mass_l - right.velocity * mass_r) /
-      (mass_l - mass_r);
+      (right.pressure - left.pressure + left.velocity * mass_l - right.velocity * mass_r) / (mass_l - mass_r);
   return w <= s_star ? star_flux(gas, left, s_l, s_star, w) : star_flux(gas, right, s_r, s_star, w);
 }
 

@@ -21,7 +21,6 @@ namespace mullion::euler_1d {
 /// @param w            velocity of the face along +x [m/s]
 /// @return             flux along +x relative to the face
 /// @pre                positive density and pressure on both sides (else the result is not finite)
-[[nodiscard]] Flux hllc_flux(const Gas& gas, const Primitive& left, const Primitive& right,
-                             double w);
+[[nodiscard]] Flux hllc_flux(const Gas& gas, const Primitive& left, const Primitive& right, double w);
 
 } // namespace mullion::euler_1d

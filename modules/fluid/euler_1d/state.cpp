@@ -13,8 +13,8 @@ void set_cell(const State& state, const Gas& gas, std::size_t cell, const Primit
   state.energy[cell] = energy_density(gas, value) * length;
 }
 
-void cell_fields(const ConstState& state, const Gas& gas, std::span<double> density,
-                 std::span<double> velocity, std::span<double> pressure)
+void cell_fields(const ConstState& state, const Gas& gas, std::span<double> density, std::span<double> velocity,
+                 std::span<double> pressure)
 {
   for (std::size_t i = 0; i < state.n_cells(); ++i) {
     const Primitive q = cell_primitive(state, gas, i);
@@ -27,14 +27,10 @@ void cell_fields(const ConstState& state, const Gas& gas, std::span<double> dens
 const char* to_string(Fault fault)
 {
   switch (fault) {
-  case Fault::non_finite:
-    return "non-finite value";
-  case Fault::length:
-    return "length not positive";
-  case Fault::density:
-    return "density not positive";
-  case Fault::pressure:
-    return "pressure not positive";
+  case Fault::non_finite: return "non-finite value";
+  case Fault::length: return "length not positive";
+  case Fault::density: return "density not positive";
+  case Fault::pressure: return "pressure not positive";
   }
   return "unknown fault";
 }
@@ -42,15 +38,12 @@ const char* to_string(Fault fault)
 std::optional<BadCell> find_bad_cell(const ConstState& state, const Gas& gas)
 {
   for (std::size_t i = 0; i < state.n_cells(); ++i) {
-    for (const double entry : {state.mass[i], state.momentum[i], state.energy[i], state.length[i],
-                               state.node_x[i], state.node_x[i + 1]})
-      if (!std::isfinite(entry))
-        return BadCell{i, Fault::non_finite, entry};
-    if (!(state.length[i] > 0.0))
-      return BadCell{i, Fault::length, state.length[i]};
+    for (const double entry :
+         {state.mass[i], state.momentum[i], state.energy[i], state.length[i], state.node_x[i], state.node_x[i + 1]})
+      if (!std::isfinite(entry)) return BadCell{i, Fault::non_finite, entry};
+    if (!(state.length[i] > 0.0)) return BadCell{i, Fault::length, state.length[i]};
     const Primitive q = cell_primitive(state, gas, i);
-    if (!(q.density > 0.0))
-      return BadCell{i, Fault::density, q.density};
+    if (!(q.density > 0.0)) return BadCell{i, Fault::density, q.density};
     if (!(q.pressure > 0.0)) // also when an overflow made it not-a-number
       return BadCell{i, Fault::pressure, q.pressure};
   }

@@ -35,9 +35,8 @@ struct ConstState {
       : mass(s.mass), momentum(s.momentum), energy(s.energy), length(s.length), node_x(s.node_x)
   {
   }
-  ConstState(std::span<const double> mass_, std::span<const double> momentum_,
-             std::span<const double> energy_, std::span<const double> length_,
-             std::span<const double> node_x_)
+  ConstState(std::span<const double> mass_, std::span<const double> momentum_, std::span<const double> energy_,
+             std::span<const double> length_, std::span<const double> node_x_)
       : mass(mass_), momentum(momentum_), energy(energy_), length(length_), node_x(node_x_)
   {
   }
@@ -59,8 +58,8 @@ void set_cell(const State& state, const Gas& gas, std::size_t cell, const Primit
 /// Output fields of all cells.
 ///
 /// @param density, velocity, pressure  n_cells each [kg/m^3], [m/s], [Pa]
-void cell_fields(const ConstState& state, const Gas& gas, std::span<double> density,
-                 std::span<double> velocity, std::span<double> pressure);
+void cell_fields(const ConstState& state, const Gas& gas, std::span<double> density, std::span<double> velocity,
+                 std::span<double> pressure);
 
 /// Why a cell no longer holds a gas.
 enum class Fault { non_finite, length, density, pressure };
@@ -71,8 +70,7 @@ const char* to_string(Fault fault);
 struct BadCell {
   std::size_t cell; ///< 0 at the left end
   Fault fault;
-  double
-      value; ///< what was found: the length, density or pressure, or the entry that is not finite
+  double value; ///< what was found: the length, density or pressure, or the entry that is not finite
 };
 
 /// First cell (from the left) with an entry that is not finite, or a length, density or pressure

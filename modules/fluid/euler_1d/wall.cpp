@@ -18,8 +18,8 @@ WallState wall_state(const ConstState& state, const Gas& gas, double w)
   // Parabola through p_w at 0, p_N at -a, p_{N-1} at -b.
   const double a = 0.5 * near_length;
   const double b = near_length + 0.5 * next_length;
-  const double gradient = p_w * (1.0 / a + 1.0 / b) - near.pressure * (b / (a * (b - a))) +
-                          next.pressure * (a / (b * (b - a)));
+  const double gradient =
+      p_w * (1.0 / a + 1.0 / b) - near.pressure * (b / (a * (b - a))) + next.pressure * (a / (b * (b - a)));
   return {p_w, gradient, face.density, sound_speed(gas, face), near_length};
 }
 

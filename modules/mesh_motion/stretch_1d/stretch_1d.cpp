@@ -43,9 +43,6 @@ void Stretch1d::attach()
   wall_velocity_ = input("wall", "velocity");
 }
 
-void Stretch1d::step(const TimeStep& step)
-{
-  stretch(xi_, wall_velocity_.at(step.end)(0, 0), flat(velocity_.now()));
-}
+void Stretch1d::step(const TimeStep& step) { stretch(xi_, wall_velocity_.at(step.end)(0, 0), flat(velocity_.now())); }
 
 } // namespace mullion::stretch_1d

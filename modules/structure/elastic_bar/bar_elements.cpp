@@ -29,8 +29,7 @@ double potential_energy(const Bar& bar, std::span<const double> displacement)
 double kinetic_energy(const Bar& bar, std::span<const double> velocity)
 {
   double sum = 0.0;
-  for (std::size_t i = 0; i < bar.n_nodes(); ++i)
-    sum += 0.5 * bar.nodal_mass(i) * velocity[i] * velocity[i];
+  for (std::size_t i = 0; i < bar.n_nodes(); ++i) sum += 0.5 * bar.nodal_mass(i) * velocity[i] * velocity[i];
   return sum;
 }
 
@@ -42,8 +41,7 @@ void equilibrium_acceleration(const Bar& bar, std::span<const double> displaceme
     const double external = i == 0 ? load : 0.0;
     acceleration[i] = (external - acceleration[i]) / bar.nodal_mass(i);
   }
-  if (bar.far_end == FarEnd::clamped)
-    acceleration[bar.n_elements] = 0.0;
+  if (bar.far_end == FarEnd::clamped) acceleration[bar.n_elements] = 0.0;
 }
 
 } // namespace mullion::elastic_bar

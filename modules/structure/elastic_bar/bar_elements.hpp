@@ -24,16 +24,10 @@ struct Bar {
 
   [[nodiscard]] std::size_t n_nodes() const { return n_elements + 1; }
   /// Nodes that can move: all, or all but the clamped one.
-  [[nodiscard]] std::size_t n_free() const
-  {
-    return far_end == FarEnd::clamped ? n_elements : n_elements + 1;
-  }
+  [[nodiscard]] std::size_t n_free() const { return far_end == FarEnd::clamped ? n_elements : n_elements + 1; }
   [[nodiscard]] double element_length() const { return length / static_cast<double>(n_elements); }
   /// k = E_s A / dx [N/m].
-  [[nodiscard]] double element_stiffness() const
-  {
-    return youngs_modulus * area / element_length();
-  }
+  [[nodiscard]] double element_stiffness() const { return youngs_modulus * area / element_length(); }
   /// Lumped mass: rho_s A dx, half of it at the two ends [kg].
   [[nodiscard]] double nodal_mass(std::size_t node) const
   {
@@ -77,9 +71,6 @@ void equilibrium_acceleration(const Bar& bar, std::span<const double> displaceme
 ///
 /// @param mean_load  Pbar [N]
 /// @param u_begin, u_end  displacement of node 0 before and after the step [m]
-inline double interface_work(double mean_load, double u_begin, double u_end)
-{
-  return mean_load * (u_end - u_begin);
-}
+inline double interface_work(double mean_load, double u_begin, double u_end) { return mean_load * (u_end - u_begin); }
 
 } // namespace mullion::elastic_bar

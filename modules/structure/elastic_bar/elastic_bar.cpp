@@ -38,7 +38,8 @@ std::vector<FieldSpec> ElasticBar::fields()
 std::vector<InputSpec> ElasticBar::inputs()
 {
   return {
-      receive("wet", "traction", Location::node, vector, "Pa", "acts on the bar along +x, compression positive").optional(),
+      receive("wet", "traction", Location::node, vector, "Pa", "acts on the bar along +x, compression positive")
+          .optional(),
       receive("wet", "load", Location::node, vector, "N", "instead of a traction").extensive().optional(),
   };
 }
@@ -56,10 +57,7 @@ void ElasticBar::define(const TimeStep&)
   write_outputs(0.0, 0.0);
 }
 
-void ElasticBar::attach()
-{
-  look_up();
-}
+void ElasticBar::attach() { look_up(); }
 
 void ElasticBar::look_up()
 {
@@ -134,10 +132,7 @@ double ElasticBar::load_at(double t)
   return bar_.area * traction_.at(t)(0, 0);
 }
 
-bool ElasticBar::is_mean_load()
-{
-  return traction_.is_connected() ? traction_.is_mean() : load_.is_mean();
-}
+bool ElasticBar::is_mean_load() { return traction_.is_connected() ? traction_.is_mean() : load_.is_mean(); }
 
 void ElasticBar::write_outputs(double load, double work) const
 {

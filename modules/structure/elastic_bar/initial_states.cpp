@@ -14,8 +14,7 @@ void set_rest(const Bar& bar, const Motion& motion, double load)
   equilibrium_acceleration(bar, motion.displacement, load, motion.acceleration);
 }
 
-void set_mode(const Bar& bar, const Motion& motion, double amplitude, double angular_frequency,
-              double load)
+void set_mode(const Bar& bar, const Motion& motion, double amplitude, double angular_frequency, double load)
 {
   const bool is_clamped = bar.far_end == FarEnd::clamped;
   const double wave_number = angular_frequency / std::sqrt(bar.youngs_modulus / bar.density);

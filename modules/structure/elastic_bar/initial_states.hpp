@@ -24,7 +24,6 @@ void set_rest(const Bar& bar, const Motion& motion, double load);
 /// [rad/s]
 /// @param load               F = A (P_s - p_ref) on node 0 at that instant [N]
 /// @pre  the denominator is not zero, i.e. the loaded end is no node of the standing wave
-void set_mode(const Bar& bar, const Motion& motion, double amplitude, double angular_frequency,
-              double load);
+void set_mode(const Bar& bar, const Motion& motion, double amplitude, double angular_frequency, double load);
 
 } // namespace mullion::elastic_bar

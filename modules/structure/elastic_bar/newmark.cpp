@@ -25,24 +25,19 @@ Newmark::Newmark(const Bar& bar, double dt)
 void Newmark::solve(std::span<double> rhs) const
 {
   const std::size_t n = pivot_.size();
-  for (std::size_t i = 1; i < n; ++i)
-    rhs[i] -= multiplier_[i] * rhs[i - 1];
-  for (std::size_t i = 0; i < n; ++i)
-    rhs[i] /= pivot_[i];
-  for (std::size_t i = n - 1; i > 0; --i)
-    rhs[i - 1] -= multiplier_[i] * rhs[i];
+  for (std::size_t i = 1; i < n; ++i) rhs[i] -= multiplier_[i] * rhs[i - 1];
+  for (std::size_t i = 0; i < n; ++i) rhs[i] /= pivot_[i];
+  for (std::size_t i = n - 1; i > 0; --i) rhs[i - 1] -= multiplier_[i] * rhs[i];
 }
 
 void Newmark::step(const Motion& motion, double load_end)
 {
   const auto& [u, v, a] = motion;
   const std::size_t n = bar_.n_free();
-  for (std::size_t i = 0; i < n; ++i)
-    predicted_[i] = u[i] + dt_ * v[i] + 0.25 * dt_ * dt_ * a[i];
+  for (std::size_t i = 0; i < n; ++i) predicted_[i] = u[i] + dt_ * v[i] + 0.25 * dt_ * dt_ * a[i];
 
   internal_force(bar_, predicted_, rhs_);
-  for (std::size_t i = 0; i < n; ++i)
-    rhs_[i] = -rhs_[i];
+  for (std::size_t i = 0; i < n; ++i) rhs_[i] = -rhs_[i];
   rhs_[0] += load_end;
   solve(rhs_); // now a^{n+1}
 
@@ -57,12 +52,10 @@ void Newmark::step_mean(const Motion& motion, double mean_load)
 {
   const auto& [u, v, a] = motion;
   const std::size_t n = bar_.n_free();
-  for (std::size_t i = 0; i < n; ++i)
-    predicted_[i] = u[i] + 0.5 * dt_ * v[i];
+  for (std::size_t i = 0; i < n; ++i) predicted_[i] = u[i] + 0.5 * dt_ * v[i];
 
   internal_force(bar_, predicted_, rhs_);
-  for (std::size_t i = 0; i < n; ++i)
-    rhs_[i] = -dt_ * rhs_[i];
+  for (std::size_t i = 0; i < n; ++i) rhs_[i] = -dt_ * rhs_[i];
   rhs_[0] += dt_ * mean_load;
   solve(rhs_); // now v^{n+1} - v
 
@@ -83,11 +76,9 @@ void central_difference_velocity(const Bar& bar, const Motion& motion, double dt
 {
   const auto& [u, v, a] = motion;
   // The sum of both accelerations enters v, but a is overwritten in between: two half kicks.
-  for (std::size_t i = 0; i < bar.n_free(); ++i)
-    v[i] += 0.5 * dt * a[i];
+  for (std::size_t i = 0; i < bar.n_free(); ++i) v[i] += 0.5 * dt * a[i];
   equilibrium_acceleration(bar, u, load_end, a);
-  for (std::size_t i = 0; i < bar.n_free(); ++i)
-    v[i] += 0.5 * dt * a[i];
+  for (std::size_t i = 0; i < bar.n_free(); ++i) v[i] += 0.5 * dt * a[i];
 }
 
 void central_difference_step(const Bar& bar, const Motion& motion, double dt, double load_end)

@@ -84,7 +84,6 @@ void central_difference_step(const Bar& bar, const Motion& motion, double dt, do
 
 /// One step with a load that is constant over it: a^n is taken in equilibrium with that load too
 /// [N].
-void central_difference_step_mean(const Bar& bar, const Motion& motion, double dt,
-                                  double mean_load);
+void central_difference_step_mean(const Bar& bar, const Motion& motion, double dt, double mean_load);
 
 } // namespace mullion::elastic_bar

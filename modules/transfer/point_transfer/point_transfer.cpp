@@ -47,11 +47,13 @@ void PointTransfer::attach()
   std::vector<bool> is_taken(static_cast<std::size_t>(n), false);
   for (Eigen::Index i = 0; i < n; ++i) {
     Eigen::Index nearest = 0;
-    const double gap2 = (structure.coordinates.colwise() - fluid.coordinates.col(i)).colwise().squaredNorm().minCoeff(&nearest);
-    MULLION_REQUIRE(gap2 <= options_.gap_tolerance * options_.gap_tolerance, Errc::shape,
-                    "fluid point {} and the structure's nearest point {} lie {} m apart, more than gap_tolerance = {} m; "
-                    "check where the two interfaces lie",
-                    i, nearest, std::sqrt(gap2), options_.gap_tolerance);
+    const double gap2 =
+        (structure.coordinates.colwise() - fluid.coordinates.col(i)).colwise().squaredNorm().minCoeff(&nearest);
+    MULLION_REQUIRE(
+        gap2 <= options_.gap_tolerance * options_.gap_tolerance, Errc::shape,
+        "fluid point {} and the structure's nearest point {} lie {} m apart, more than gap_tolerance = {} m; "
+        "check where the two interfaces lie",
+        i, nearest, std::sqrt(gap2), options_.gap_tolerance);
     MULLION_REQUIRE(!is_taken[static_cast<std::size_t>(nearest)], Errc::shape,
                     "structure point {} is the nearest to two fluid points", nearest);
     is_taken[static_cast<std::size_t>(nearest)] = true;
@@ -71,7 +73,8 @@ void PointTransfer::loads(const TimeStep&)
   const auto from = received_traction_.newest();
   auto to = traction_.now();
   for (std::size_t face = 0; face < node_of_face_.size(); ++face)
-    to.col(structure_of_fluid_[static_cast<std::size_t>(node_of_face_[face])]) = from.col(static_cast<Eigen::Index>(face));
+    to.col(structure_of_fluid_[static_cast<std::size_t>(node_of_face_[face])]) =
+        from.col(static_cast<Eigen::Index>(face));
 }
 
 void PointTransfer::motion(const TimeStep&)

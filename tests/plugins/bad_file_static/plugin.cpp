@@ -19,4 +19,5 @@ protected:
 
 } // namespace mullion::test
 
-MULLION_PLUGIN(mullion::test::BadFileStatic, "structure", "bad_file_static", "test structure with state in a file static");
+MULLION_PLUGIN(mullion::test::BadFileStatic, "structure", "bad_file_static",
+               "test structure with state in a file static");

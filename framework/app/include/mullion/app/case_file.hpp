@@ -17,11 +17,11 @@ struct ParameterValue {
 };
 
 struct ModuleCase {
-  std::string instance;  ///< the table's name: "fluid"
-  std::string kind;      ///< from the plug-in: "fluid"
-  std::string plugin;    ///< the name of its library
-  std::string version;   ///< of the plug-in
-  std::string path;      ///< of the library
+  std::string instance; ///< the table's name: "fluid"
+  std::string kind;     ///< from the plug-in: "fluid"
+  std::string plugin;   ///< the name of its library
+  std::string version;  ///< of the plug-in
+  std::string path;     ///< of the library
   bool is_process = false;
   std::vector<ParameterValue> parameters;
 };
@@ -39,16 +39,16 @@ struct ConnectionCase {
 
 /// A value that the run's summary compares with a measured one: [[expect]] in the case.
 struct Expectation {
-  std::string quantity;       ///< a column of history.csv
-  double amplitude = 0.0;     ///< 0: not given; half of max - min over the run
-  double frequency = 0.0;     ///< [Hz] 0: not given; the dominant frequency
-  std::string source;         ///< where the numbers come from
+  std::string quantity;   ///< a column of history.csv
+  double amplitude = 0.0; ///< 0: not given; half of max - min over the run
+  double frequency = 0.0; ///< [Hz] 0: not given; the dominant frequency
+  std::string source;     ///< where the numbers come from
 };
 
 struct Case {
   std::string file;
   std::string name;
-  double start_time = 0.0, end_time = 0.0, dt = 0.0; ///< [s]
+  double start_time = 0.0, end_time = 0.0, dt = 0.0;    ///< [s]
   double call_deadline = 300.0, start_deadline = 600.0; ///< [s]; 0: none
   std::string on_failure = "stop";
   std::vector<ModuleCase> modules; ///< in the order fluid, structure, mesh_motion, transfer, then by name
@@ -58,7 +58,7 @@ struct Case {
   std::string scheme_path; ///< of the library
   std::vector<ParameterValue> driver_parameters;
   std::vector<ConnectionCase> connections;
-  std::int64_t output_every = 0;  ///< steps between result files; 0: none
+  std::int64_t output_every = 0; ///< steps between result files; 0: none
   bool has_history = true;
   std::vector<Expectation> expectations;
   std::string text; ///< the case as it is run, overrides included: what case.toml will say

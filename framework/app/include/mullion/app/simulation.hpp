@@ -10,9 +10,9 @@ namespace mullion {
 struct RunOptions {
   std::string case_file;
   CaseOptions case_options;
-  std::string out;          ///< results folder; "" is out/<run name>
-  bool replay = false;      ///< every step twice from restored windows, compared byte for byte
-  int amnesia = 0;          ///< every K-th step again by fresh processes and a new driver; 0: never
+  std::string out;     ///< results folder; "" is out/<run name>
+  bool replay = false; ///< every step twice from restored windows, compared byte for byte
+  int amnesia = 0;     ///< every K-th step again by fresh processes and a new driver; 0: never
   bool has_deadlines = true;
   std::string log_level = "info";
 };

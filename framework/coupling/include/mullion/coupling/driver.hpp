@@ -35,10 +35,7 @@ public:
 
 namespace detail {
 template <class T> struct DriverPluginOf {
-  static Driver* create(const mullion_value* values)
-  {
-    return new T(read_options<typename T::Options>(values));
-  }
+  static Driver* create(const mullion_value* values) { return new T(read_options<typename T::Options>(values)); }
   static const void* entry()
   {
     const auto& parameters = parameter_specs<typename T::Options>();
@@ -57,14 +54,14 @@ template <class T> struct DriverPluginOf {
 #endif
 
 /// Export a Driver class as a plug-in.
-#define MULLION_DRIVER(Class, name, summary)                                                       \
-  extern "C" __attribute__((visibility("default"))) const mullion_header mullion_plugin;          \
-  extern "C" constexpr mullion_header mullion_plugin = {MULLION_MAGIC,                            \
-                                                        MULLION_ABI,                              \
-                                                        sizeof(mullion_header),                   \
-                                                        "driver",                                 \
-                                                        name,                                     \
-                                                        MULLION_PLUGIN_VERSION,                   \
-                                                        summary,                                  \
-                                                        MULLION_BUILD_ID,                         \
+#define MULLION_DRIVER(Class, name, summary)                                                                           \
+  extern "C" __attribute__((visibility("default"))) const mullion_header mullion_plugin;                               \
+  extern "C" constexpr mullion_header mullion_plugin = {MULLION_MAGIC,                                                 \
+                                                        MULLION_ABI,                                                   \
+                                                        sizeof(mullion_header),                                        \
+                                                        "driver",                                                      \
+                                                        name,                                                          \
+                                                        MULLION_PLUGIN_VERSION,                                        \
+                                                        summary,                                                       \
+                                                        MULLION_BUILD_ID,                                              \
                                                         &::mullion::detail::DriverPluginOf<Class>::entry}

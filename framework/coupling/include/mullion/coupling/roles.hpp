@@ -36,10 +36,10 @@ inline FsiNames wire_fsi(Wiring& wiring, TimePolicy profile, TimePolicy load_pol
 struct FsiRoles {
   ModuleProxy fluid, structure, mesh_motion;
   Action transfer_loads, transfer_motion;
-  ModuleField load_on_structure;  ///< traction, transferred to the structure's side [Pa]
-  ModuleField motion_on_fluid;    ///< velocity, transferred to the fluid's side [m/s]
-  ReceivedField structure_load;   ///< what the structure receives [Pa]
-  ReceivedField wall_velocity;    ///< what the mesh motion receives [m/s]
+  ModuleField load_on_structure; ///< traction, transferred to the structure's side [Pa]
+  ModuleField motion_on_fluid;   ///< velocity, transferred to the fluid's side [m/s]
+  ReceivedField structure_load;  ///< what the structure receives [Pa]
+  ReceivedField wall_velocity;   ///< what the mesh motion receives [m/s]
 
   FsiRoles() = default;
   FsiRoles(const Coupling& coupling, const FsiNames& names)

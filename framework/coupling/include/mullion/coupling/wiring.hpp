@@ -19,10 +19,10 @@ struct InterfacePair {
 };
 
 struct Connection {
-  std::string receiver;                       ///< instance.window.field, an input
-  std::string source;                         ///< bound: instance.window.field; empty: stored
-  TimePolicy policy = TimePolicy::constant;   ///< how the receiver reads between the stamped levels
-  int levels = 2;                             ///< stored: slots of the companion, the working one included
+  std::string receiver;                     ///< instance.window.field, an input
+  std::string source;                       ///< bound: instance.window.field; empty: stored
+  TimePolicy policy = TimePolicy::constant; ///< how the receiver reads between the stamped levels
+  int levels = 2;                           ///< stored: slots of the companion, the working one included
 };
 
 /// A field of driver/state, shaped like a port's field, or `size` numbers.
@@ -65,10 +65,7 @@ public:
   void state_numbers(const std::string& name, int size) { states.push_back({name, "", size}); }
   void state_levels(int committed_levels) { committed_state_levels = committed_levels; }
   /// Keep more committed levels of a module's window.
-  void history(const std::string& window, int committed_levels)
-  {
-    histories.push_back({window, committed_levels});
-  }
+  void history(const std::string& window, int committed_levels) { histories.push_back({window, committed_levels}); }
   /// The scheme cannot take steps of varying size.
   void require_constant_step() { needs_constant_step = true; }
 

@@ -35,16 +35,16 @@ private:
 } // namespace mullion
 
 /// Throw mullion::Error unless `condition` holds: for mistakes of the user, a file, the machine, another process.
-#define MULLION_REQUIRE(condition, code, ...)                                                      \
-  do {                                                                                             \
-    if (!(condition)) throw ::mullion::Error((code), ::fmt::format(__VA_ARGS__));                   \
+#define MULLION_REQUIRE(condition, code, ...)                                                                          \
+  do {                                                                                                                 \
+    if (!(condition)) throw ::mullion::Error((code), ::fmt::format(__VA_ARGS__));                                      \
   } while (false)
 
 /// A broken invariant of our own: thrown as Errc::internal, so that a run ends with a message and not a core.
-#define MULLION_ASSERT(condition, ...)                                                             \
-  do {                                                                                             \
-    if (!(condition))                                                                              \
-      throw ::mullion::Error(::mullion::Errc::internal,                                            \
-                             ::fmt::format("{}:{}: broken invariant '{}': ", __FILE__, __LINE__,   \
-                                           #condition) + ::fmt::format(__VA_ARGS__));              \
+#define MULLION_ASSERT(condition, ...)                                                                                 \
+  do {                                                                                                                 \
+    if (!(condition))                                                                                                  \
+      throw ::mullion::Error(::mullion::Errc::internal,                                                                \
+                             ::fmt::format("{}:{}: broken invariant '{}': ", __FILE__, __LINE__, #condition) +         \
+                                 ::fmt::format(__VA_ARGS__));                                                          \
   } while (false)

@@ -59,8 +59,7 @@ struct FieldSpec {
 inline FieldSpec state(std::string window, std::string name, Location location, std::uint32_t components,
                        std::string unit, std::string meaning)
 {
-  return {std::move(window), std::move(name),    location,   components,
-          std::move(unit),   std::move(meaning), Role::state};
+  return {std::move(window), std::move(name), location, components, std::move(unit), std::move(meaning), Role::state};
 }
 
 /// Output: computed afresh by every step; on arming it holds garbage (NaN under --replay).
@@ -78,8 +77,7 @@ inline FieldSpec output(std::string window, std::string name, Location location,
 inline FieldSpec fixed(std::string window, std::string name, Location location, std::uint32_t components,
                        std::string unit, std::string meaning)
 {
-  return {std::move(window), std::move(name),    location,   components,
-          std::move(unit),   std::move(meaning), Role::fixed};
+  return {std::move(window), std::move(name), location, components, std::move(unit), std::move(meaning), Role::fixed};
 }
 
 /// One field that a module receives, on the entities of its own window `window`.

@@ -31,7 +31,7 @@ constexpr std::uint32_t nodes_per_element(std::uint32_t element)
   return element < 8 ? nodes[element] : 0;
 }
 
-using Coordinates = Eigen::MatrixXd; ///< (dimension x n_nodes) [m]
+using Coordinates = Eigen::MatrixXd;                                       ///< (dimension x n_nodes) [m]
 using Connectivity = Eigen::Matrix<Index, Eigen::Dynamic, Eigen::Dynamic>; ///< (nodes x elements), 0-based
 
 /// Elements of one type within a pane.
@@ -78,9 +78,9 @@ inline Pane to_pane(const mullion_pane& raw)
   Pane pane{raw.id, Eigen::Map<const Eigen::MatrixXd>(raw.coordinates, raw.dimension, raw.n_nodes), {}};
   for (std::uint32_t b = 0; b < raw.n_blocks; ++b) {
     const auto& block = raw.blocks[b];
-    pane.blocks.push_back({static_cast<ElementType>(block.element),
-                           Eigen::Map<const Connectivity>(block.connectivity, block.nodes_per_element,
-                                                          block.n_elements)});
+    pane.blocks.push_back(
+        {static_cast<ElementType>(block.element),
+         Eigen::Map<const Connectivity>(block.connectivity, block.nodes_per_element, block.n_elements)});
   }
   return pane;
 }

@@ -51,8 +51,8 @@ protected:
       for (const auto& block : panes[p].blocks) {
         const auto type = static_cast<std::uint32_t>(block.type);
         MULLION_REQUIRE(block.connectivity.rows() == nodes_per_element(type), Errc::shape,
-                        "window {}: a block of element type {} has {} nodes an element, its type has {}", window,
-                        type, block.connectivity.rows(), nodes_per_element(type));
+                        "window {}: a block of element type {} has {} nodes an element, its type has {}", window, type,
+                        block.connectivity.rows(), nodes_per_element(type));
         blocks[p].push_back({type, nodes_per_element(type), block.connectivity.cols(), block.connectivity.data()});
       }
       raw[p] = {panes[p].id,
@@ -70,18 +70,18 @@ protected:
   [[nodiscard]] Pane peer_pane(const std::string& kind, const std::string& window, std::uint32_t pane = 0) const
   {
     mullion_pane raw{};
-    services_.require(
-        services_.raw()->peer_pane(services_.context(), kind.c_str(), window.c_str(), pane, &raw));
+    services_.require(services_.raw()->peer_pane(services_.context(), kind.c_str(), window.c_str(), pane, &raw));
     return to_pane(raw);
   }
   /// A fixed integer field of another module, only in define.
-  [[nodiscard]] Eigen::Matrix<Index, Eigen::Dynamic, Eigen::Dynamic>
-  peer_indices(const std::string& kind, const std::string& window, const std::string& field,
-               std::uint32_t pane = 0) const
+  [[nodiscard]] Eigen::Matrix<Index, Eigen::Dynamic, Eigen::Dynamic> peer_indices(const std::string& kind,
+                                                                                  const std::string& window,
+                                                                                  const std::string& field,
+                                                                                  std::uint32_t pane = 0) const
   {
     mullion_array raw{};
-    services_.require(services_.raw()->peer_fixed(services_.context(), kind.c_str(), window.c_str(), pane,
-                                                  field.c_str(), &raw));
+    services_.require(
+        services_.raw()->peer_fixed(services_.context(), kind.c_str(), window.c_str(), pane, field.c_str(), &raw));
     MULLION_REQUIRE(raw.scalar == MULLION_I32, Errc::shape, "field {} of the {} holds no integers", field, kind);
     return ConstIndexArray(static_cast<const Index*>(raw.data), raw.components, raw.entities);
   }
@@ -96,16 +96,14 @@ protected:
   [[nodiscard]] Field field(const std::string& window, const std::string& name, std::uint32_t pane = 0) const
   {
     std::uint32_t handle = 0;
-    services_.require(
-        services_.raw()->field(services_.context(), window.c_str(), pane, name.c_str(), &handle));
+    services_.require(services_.raw()->field(services_.context(), window.c_str(), pane, name.c_str(), &handle));
     return {&services_, handle};
   }
   /// The handle of a received field; ask is_connected() where it is optional.
   [[nodiscard]] Input input(const std::string& window, const std::string& name, std::uint32_t pane = 0) const
   {
     std::uint32_t handle = 0;
-    services_.require(
-        services_.raw()->input(services_.context(), window.c_str(), pane, name.c_str(), &handle));
+    services_.require(services_.raw()->input(services_.context(), window.c_str(), pane, name.c_str(), &handle));
     return {&services_, handle};
   }
   [[nodiscard]] Log log() const { return Log(&services_); }
@@ -124,8 +122,7 @@ template <class Member> struct Function {
 
 /// A function of the step that writes the working level of the window `writes`: void f(const TimeStep&).
 template <class Owner>
-constexpr auto action(const char* name, void (Owner::*member)(const TimeStep&), const char* writes,
-                      const char* meaning)
+constexpr auto action(const char* name, void (Owner::*member)(const TimeStep&), const char* writes, const char* meaning)
 {
   return Function<void (Owner::*)(const TimeStep&)>{name, member, writes, meaning};
 }

@@ -55,8 +55,8 @@ template <class Owner, class T> struct Parameter {
 
 /// A parameter with a default: the value that its member has in a fresh Options.
 template <class Owner, class T>
-constexpr Parameter<Owner, T> parameter(const char* name, T Owner::*member, const char* unit,
-                                        const char* meaning, Range range = {})
+constexpr Parameter<Owner, T> parameter(const char* name, T Owner::*member, const char* unit, const char* meaning,
+                                        Range range = {})
 {
   return {name, member, unit, meaning, range, false};
 }

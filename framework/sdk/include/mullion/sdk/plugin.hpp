@@ -36,8 +36,7 @@ inline void reset_floating_point()
 inline TimeStep to_step(const mullion_step& raw) { return {raw.index, raw.begin, raw.end, raw.dt, raw.iteration}; }
 
 /// Run a body and turn whatever it throws into a status and a text.
-template <class Body>
-std::int32_t guarded(const mullion_services* services, void* context, Body&& body) noexcept
+template <class Body> std::int32_t guarded(const mullion_services* services, void* context, Body&& body) noexcept
 {
   reset_floating_point();
   const auto fail = [&](Errc code, const char* text) {
@@ -59,7 +58,10 @@ std::int32_t guarded(const mullion_services* services, void* context, Body&& bod
 }
 
 template <class T>
-concept OffersFunctions = requires { T::functions(); };
+concept OffersFunctions = requires
+{
+  T::functions();
+};
 
 template <class Owner> double invoke(Owner& owner, double (Owner::*member)(), const double*)
 {
@@ -68,9 +70,8 @@ template <class Owner> double invoke(Owner& owner, double (Owner::*member)(), co
 template <class Owner, class... Arguments>
 double invoke(Owner& owner, double (Owner::*member)(Arguments...), const double* values)
 {
-  return [&]<std::size_t... I>(std::index_sequence<I...>) {
-    return (owner.*member)(values[I]...);
-  }(std::index_sequence_for<Arguments...>{});
+  return [&]<std::size_t... I>(std::index_sequence<I...>) { return (owner.*member)(values[I]...); }
+  (std::index_sequence_for<Arguments...>{});
 }
 template <class Member> struct Arity;
 template <class Owner, class... A> struct Arity<double (Owner::*)(A...)> {
@@ -93,8 +94,7 @@ template <class T> struct PluginOf {
     return guarded(instance.services, instance.context, [&] { body(*instance.module); });
   }
 
-  static std::int32_t create(void* context, const mullion_services* services, const mullion_value* values,
-                             void** out)
+  static std::int32_t create(void* context, const mullion_services* services, const mullion_value* values, void** out)
   {
     return guarded(services, context, [&] {
       auto instance = std::make_unique<Instance>(Instance{services, context, nullptr});
@@ -202,8 +202,9 @@ template <class T> struct PluginOf {
 } // namespace mullion::detail
 
 /// Export a Module class as a plug-in. `kind` is fluid, structure, mesh_motion or transfer.
-#define MULLION_PLUGIN(Class, kind, name, summary)                                                              \
-  extern "C" __attribute__((visibility("default"))) const mullion_header mullion_plugin;                       \
-  extern "C" constexpr mullion_header mullion_plugin = {                                                       \
-      MULLION_MAGIC, MULLION_ABI, sizeof(mullion_header), kind,    name, MULLION_PLUGIN_VERSION, summary,      \
-      nullptr,       &::mullion::detail::PluginOf<Class>::entry}
+#define MULLION_PLUGIN(Class, kind, name, summary)                                                                     \
+  extern "C" __attribute__((visibility("default"))) const mullion_header mullion_plugin;                               \
+  extern "C" constexpr mullion_header mullion_plugin = {                                                               \
+      MULLION_MAGIC, MULLION_ABI, sizeof(mullion_header),                                                              \
+      kind,          name,        MULLION_PLUGIN_VERSION,                                                              \
+      summary,       nullptr,     &::mullion::detail::PluginOf<Class>::entry}

@@ -20,19 +20,12 @@ namespace mullion {
 
 using Array = Eigen::Map<Eigen::MatrixXd, Eigen::Aligned64>; ///< (components x entities), one a column
 using ConstArray = Eigen::Map<const Eigen::MatrixXd, Eigen::Aligned64>;
-using ConstIndexArray =
-    Eigen::Map<const Eigen::Matrix<Index, Eigen::Dynamic, Eigen::Dynamic>, Eigen::Aligned64>;
+using ConstIndexArray = Eigen::Map<const Eigen::Matrix<Index, Eigen::Dynamic, Eigen::Dynamic>, Eigen::Aligned64>;
 using IndexArray = Eigen::Map<Eigen::Matrix<Index, Eigen::Dynamic, Eigen::Dynamic>, Eigen::Aligned64>;
 
 /// All entries of an array, component after component, entity after entity.
-inline std::span<double> flat(Array array)
-{
-  return {array.data(), static_cast<std::size_t>(array.size())};
-}
-inline std::span<const double> flat(ConstArray array)
-{
-  return {array.data(), static_cast<std::size_t>(array.size())};
-}
+inline std::span<double> flat(Array array) { return {array.data(), static_cast<std::size_t>(array.size())}; }
+inline std::span<const double> flat(ConstArray array) { return {array.data(), static_cast<std::size_t>(array.size())}; }
 
 /// The coupling step that a call belongs to. The times are computed once by Mullion; nobody recomputes them.
 struct TimeStep {
@@ -135,9 +128,7 @@ public:
   [[nodiscard]] ConstArray at(double t)
   {
     const auto raw = received();
-    const auto level = [&](std::uint32_t k) {
-      return ConstArray(raw.data[k], raw.components, raw.entities);
-    };
+    const auto level = [&](std::uint32_t k) { return ConstArray(raw.data[k], raw.components, raw.entities); };
     if (raw.policy == MULLION_CONSTANT || raw.n_levels < 2) return level(0);
     const double newest = raw.stamps[0].time, before = raw.stamps[1].time;
     const double tolerance = 1e-9 * std::abs(newest - before);
