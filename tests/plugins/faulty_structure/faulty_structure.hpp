@@ -32,8 +32,8 @@ public:
           parameter("origin", &Options::origin, "m", "where the wet point lies at rest"),
           parameter("fault", &Options::fault, "",
                     "none, throw, throw_foreign, segfault, abort, exit, hang, slow, not_a_number, print, log, "
-                    "unwritten, huge, "
-                    "garbage_window, stray_write, stray_write_peer or stray_write_fixed"),
+                    "unwritten, huge, garbage_window, stray_write, "
+                    "stray_write_peer or stray_write_fixed"),
           parameter("at", &Options::at, "", "the call that misbehaves", one_of("define", "attach", "start", "step")),
           parameter("at_step", &Options::at_step, "1", "at = step: in which one", at_least(1)),
           parameter("duration", &Options::duration, "s", "fault = slow: how long", at_least(0.0))};
