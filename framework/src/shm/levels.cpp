@@ -100,8 +100,12 @@ std::int64_t first_not_finite(const double* values, std::int64_t n)
   // This runs over every exchanged field in every step: one addition a value, in eight independent lanes, which the
   // compiler turns into vector additions without reordering any. Infinities and NaN survive in a sum; a sum that
   // overflows by itself only costs a closer look at its chunk.
+  //
+  // The chunks are taken from the last to the first: what was written last is what the caches still hold, and the
+  // reader, who comes next and starts at the front, finds the front there.
   constexpr std::int64_t chunk = 4096, n_lanes = 8;
-  for (std::int64_t start = 0; start < n; start += chunk) {
+  std::int64_t first = -1;
+  for (std::int64_t start = (n - 1) / chunk * chunk; start >= 0; start -= chunk) {
     const auto end = std::min(n, start + chunk);
     double lanes[n_lanes] = {};
     std::int64_t i = start;
@@ -111,10 +115,10 @@ std::int64_t first_not_finite(const double* values, std::int64_t n)
     for (; i < end; ++i) sum += values[i];
     for (const double lane : lanes) sum += lane;
     if (std::isfinite(sum)) continue;
-    for (i = start; i < end; ++i)
-      if (!std::isfinite(values[i])) return i;
+    for (i = end - 1; i >= start; --i)
+      if (!std::isfinite(values[i])) first = i;
   }
-  return -1;
+  return first;
 }
 
 } // namespace mullion::shm

@@ -28,18 +28,18 @@ struct Example {
     plan.n_slots = 3;
     plan.panes = {{7, 5, 2, coordinates.data(), blocks.data(), 2, 2},
                   {8, 2, 2, coordinates.data(), point_block.data(), 1, 2}};
-    FieldPlan velocity;
+    auto& velocity = plan.fields.emplace_back();
     velocity.name = "velocity";
     velocity.unit = "m/s";
     velocity.components = 2;
     velocity.entities = 5;
-    FieldPlan pressure;
+    auto& pressure = plan.fields.emplace_back();
     pressure.name = "pressure";
     pressure.unit = "Pa";
     pressure.location = MULLION_ELEMENT;
     pressure.role = MULLION_OUTPUT;
     pressure.entities = 2;
-    FieldPlan numbers;
+    auto& numbers = plan.fields.emplace_back();
     numbers.name = "numbers";
     numbers.unit = "1";
     numbers.pane = 1;
@@ -47,7 +47,6 @@ struct Example {
     numbers.scalar = MULLION_I32;
     numbers.storage = Storage::fixed;
     numbers.entities = 2;
-    plan.fields = {velocity, pressure, numbers};
   }
   [[nodiscard]] std::vector<std::byte> write() const
   {
