@@ -177,7 +177,8 @@ WindowView::WindowView(std::byte* object, std::uint64_t bytes, std::string_view 
                     expected_name, what, found, expected);
   };
   require(bytes >= sizeof(WindowHeader), "the size", bytes, sizeof(WindowHeader));
-  const auto& h = *reinterpret_cast<const WindowHeader*>(object);
+  WindowHeader h;
+  std::memcpy(&h, object, sizeof h);
   require(h.magic == window_magic, "the magic number", h.magic, window_magic);
   require(h.version == layout_version, "the layout version", h.version, layout_version);
   require(h.total_bytes <= bytes, "the recorded size", h.total_bytes, bytes);
@@ -189,7 +190,10 @@ WindowView::WindowView(std::byte* object, std::uint64_t bytes, std::string_view 
   const auto fixed_offset = round_up(h.fields_offset + std::uint64_t{h.n_fields} * sizeof(FieldRecord), alignment);
   require(h.fixed_offset == fixed_offset && fixed_offset <= bytes, "the fixed part's offset", h.fixed_offset,
           fixed_offset);
-  const auto hash = schema_checksum(object);
+  schema_ = std::make_shared<const std::vector<std::byte>>(object, object + fixed_offset);
+  h = header(); // from here on only the copy counts
+  require(h.fixed_offset == fixed_offset, "the fixed part's offset", h.fixed_offset, fixed_offset);
+  const auto hash = schema_checksum(schema_->data());
   require(h.schema_checksum == hash, "the schema's checksum", h.schema_checksum, hash);
   // From here on the records are what their owner wrote; the checks below catch an owner that wrote nonsense.
   const auto inside = [](std::uint64_t offset, std::uint64_t size, std::uint64_t from, std::uint64_t to) {
@@ -250,17 +254,17 @@ WindowView::WindowView(std::byte* object, std::uint64_t bytes, std::string_view 
 
 std::span<const PaneRecord> WindowView::panes() const
 {
-  return {reinterpret_cast<const PaneRecord*>(object_ + header().panes_offset), header().n_panes};
+  return {reinterpret_cast<const PaneRecord*>(schema_->data() + header().panes_offset), header().n_panes};
 }
 
 std::span<const BlockRecord> WindowView::blocks() const
 {
-  return {reinterpret_cast<const BlockRecord*>(object_ + header().blocks_offset), header().n_blocks};
+  return {reinterpret_cast<const BlockRecord*>(schema_->data() + header().blocks_offset), header().n_blocks};
 }
 
 std::span<const FieldRecord> WindowView::fields() const
 {
-  return {reinterpret_cast<const FieldRecord*>(object_ + header().fields_offset), header().n_fields};
+  return {reinterpret_cast<const FieldRecord*>(schema_->data() + header().fields_offset), header().n_fields};
 }
 
 int WindowView::find_field(std::uint32_t pane, std::string_view name) const

@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -90,7 +91,8 @@ std::uint64_t window_bytes(const WindowPlan& plan);
 /// Write schema, coordinates and connectivity; slots and fixed fields stay as they are (zero in a new object).
 void write_window(const WindowPlan& plan, std::byte* object, std::uint64_t bytes);
 
-/// A checked window object. Every record and offset was found to lie inside of it.
+/// A checked window object. Every record and offset was found to lie inside of it. The schema is a private copy: a
+/// module that garbles its own header later cannot mislead anybody.
 class WindowView {
 public:
   WindowView() = default;
@@ -98,7 +100,7 @@ public:
   WindowView(std::byte* object, std::uint64_t bytes, std::string_view expected_name);
 
   [[nodiscard]] bool is_valid() const { return object_ != nullptr; }
-  [[nodiscard]] const WindowHeader& header() const { return *reinterpret_cast<const WindowHeader*>(object_); }
+  [[nodiscard]] const WindowHeader& header() const { return *reinterpret_cast<const WindowHeader*>(schema_->data()); }
   [[nodiscard]] std::span<const PaneRecord> panes() const;
   [[nodiscard]] std::span<const BlockRecord> blocks() const;
   [[nodiscard]] std::span<const FieldRecord> fields() const;
@@ -121,6 +123,7 @@ public:
 
 private:
   std::byte* object_ = nullptr;
+  std::shared_ptr<const std::vector<std::byte>> schema_; ///< header and records
 };
 
 constexpr std::uint64_t scalar_bytes(std::uint32_t scalar) { return scalar == MULLION_I32 ? 4 : 8; }
