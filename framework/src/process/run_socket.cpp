@@ -101,6 +101,11 @@ std::string runtime_folder()
 RunSocket::RunSocket(const std::string& run_name, pid_t pid)
     : path_(socket_path_of(run_name)), lock_path_(lock_path_of(run_name)), lock_(try_lock(lock_path_, O_CREAT))
 {
+  // `mullion ps` holds the lock for an instant when it looks whether a run is alive: ask more than once.
+  for (int attempt = 0; attempt < 5 && !lock_.is_open(); ++attempt) {
+    ::usleep(10'000);
+    lock_ = try_lock(lock_path_, O_CREAT);
+  }
   MULLION_REQUIRE(
       lock_.is_open(), Errc::config,
       "a run named '{}' is alive (process {}); wait for it, end it with 'mullion stop {}', or give this one "
