@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* runtime_variable = "MULLION_RUNTIME_DIR";
 constexpr const char* memory_folder = "/dev/shm";
-constexpr const char* folder_name = "mullion-run-";
+constexpr const char* folder_name = "mullion-run-"; // unit tests' scratch folders start with it too
 
 std::set<std::string> shared_memory()
 {

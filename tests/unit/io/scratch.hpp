@@ -21,7 +21,7 @@ public:
     // in memory where that is to be had: the writers sync every file, and a disk takes milliseconds for each
     const bool has_memory = ::access("/dev/shm", W_OK | X_OK) == 0;
     const auto base = has_memory ? std::filesystem::path("/dev/shm") : std::filesystem::temp_directory_path();
-    std::string pattern = (base / "mullion-io-XXXXXX").string();
+    std::string pattern = (base / "mullion-run-io-XXXXXX").string();
     const char* const made = ::mkdtemp(pattern.data());
     MULLION_REQUIRE(made != nullptr, Errc::io, "no scratch folder {}", pattern);
     path_ = made;
