@@ -198,6 +198,6 @@ int main(int argc, char** argv)
                      {"run.dt=6e-6", "run.end_time=0.06", "output.every=0", "output.history=false", "expect=[]"}, 10000,
                      false)
             .step_s);
-  fmt::print("\nclosed piston, five processes on {} cores, six calls a step: {:.1f} us a step\n",
+  fmt::print("\nclosed piston, five processes on {} cores, five calls a step: {:.1f} us a step\n",
              ::sysconf(_SC_NPROCESSORS_ONLN), 1e6 * median(five));
 }
