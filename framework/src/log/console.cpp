@@ -1,5 +1,7 @@
 #include "log/console.hpp"
 
+#include <mullion/sdk/abi.h>
+
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
@@ -73,6 +75,16 @@ bool parse_level(std::string_view name, Level& level)
       return true;
     }
   return false;
+}
+
+Level level_of(std::uint32_t number)
+{
+  switch (number) {
+  case MULLION_DEBUG: return Level::debug;
+  case MULLION_WARNING: return Level::warning;
+  case MULLION_ERROR: return Level::error;
+  default: return Level::info;
+  }
 }
 
 void initialise(Level level, bool is_terminal)

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,6 +15,9 @@ enum class Level { debug, info, warning, error, off };
 
 /// "debug", "info", …; returns false for an unknown name.
 bool parse_level(std::string_view name, Level& level);
+
+/// The level of a mullion_log_level number of the C boundary; what is unknown counts as info.
+Level level_of(std::uint32_t number);
 
 /// Once, before the first line. `is_terminal`: standard error is one, and may show a progress line.
 void initialise(Level level, bool is_terminal);

@@ -43,9 +43,7 @@ void log_line(Host& host, const std::string& line)
   auto level = log::Level::info;
   std::string_view text = line;
   if (text.size() >= 2 && text[0] == '\1' && '0' <= text[1] && text[1] <= '4') {
-    constexpr log::Level levels[] = {log::Level::debug, log::Level::debug, log::Level::info, log::Level::warning,
-                                     log::Level::error};
-    level = levels[text[1] - '0'];
+    level = log::level_of(static_cast<std::uint32_t>(text[1] - '0'));
     text.remove_prefix(2);
   }
   log::write(level, host.name, text);

@@ -183,9 +183,7 @@ void Session::spawn(std::uint32_t m)
   windows_.allow(m);
   module.runtime = std::make_unique<module::ModuleRuntime>(
       windows_, m, [name = module.config->instance](std::uint32_t level, const std::string& text) {
-        constexpr log::Level levels[] = {log::Level::debug, log::Level::debug, log::Level::info, log::Level::warning,
-                                         log::Level::error};
-        log::write(levels[std::min(level, 4u)], name, text);
+            log::write(log::level_of(level), name, text);
       });
 }
 
