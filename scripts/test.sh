@@ -44,7 +44,7 @@ run() { # run TITLE build_and_test-arguments…
 {
   echo "# Outcome of scripts/test.sh --full"
   echo
-  echo "Made by that command on $(date -u +%Y-%m-%d), commit $(git -C "$root" rev-parse --short HEAD), $(nproc) cores."
+  echo "Made by that command on $(date -u +%Y-%m-%d), commit $(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown), $(nproc) cores."
   echo
 } >"$record"
 run "Release, short and full" test -C Full -- -DCMAKE_BUILD_TYPE=Release
