@@ -12,22 +12,25 @@ namespace mullion::css {
 
 class Css final : public Driver {
 public:
-  struct Options {
+  struct Options : FsiOptions {
     double alpha = 0.0, beta = 0.0;
     std::string order = "structure_first";
-    std::string profile = "constant";
+    std::string load_time = "end";
 
     static constexpr auto table()
     {
-      return std::tuple{
-          parameter("alpha", &Options::alpha, "1", "share of the old wall velocity in the one that the fluid gets",
-                    between(0.0, 1.0)),
-          parameter("beta", &Options::beta, "1", "share of the old traction in the load that the structure gets",
-                    between(0.0, 1.0)),
-          parameter("order", &Options::order, "", "who moves first", one_of("structure_first", "fluid_first")),
-          parameter("profile", &Options::profile, "",
-                    "wall velocity within a step: constant (the step's value) or linear (from the last step's value)",
-                    one_of("constant", "linear"))};
+      return std::tuple_cat(
+          std::tuple{parameter("alpha", &Options::alpha, "1",
+                               "share of the old wall velocity in the one that the fluid gets", between(0.0, 1.0)),
+                     parameter("beta", &Options::beta, "1",
+                               "share of the old traction in the load that the structure gets", between(0.0, 1.0)),
+                     parameter("order", &Options::order, "", "who moves first",
+                               one_of("structure_first", "fluid_first"))},
+          profile_option(), sampling_option(),
+          std::tuple{parameter("load_time", &Options::load_time, "",
+                               "the structure takes the load for the end of its step, or for its mean",
+                               one_of("end", "mean"))},
+          load_interpolation_option(), motion_option());
     }
   };
 
@@ -38,12 +41,18 @@ public:
         "alpha = {} has no meaning with order = \"fluid_first\", where the fluid gets the old motion anyway; "
         "leave it out",
         options.alpha);
+    if (options.load_time == "mean") options_.load_interpolation = "constant"; // a mean has no course within the step
   }
 
   void define(Wiring& wiring) override
   {
-    names_ = wire_fsi(wiring, options_.profile == "constant" ? TimePolicy::constant : TimePolicy::linear);
+    const double alpha = options_.alpha, beta = options_.beta;
+    names_ = wire_fsi(wiring, options_);
     wiring.state_like("load", names_.wet + ".traction");
+    const double load_lag = options_.load_time == "end" ? options_.sampling_lag() : options_.sampling_lag() - 0.5;
+    wiring.state_net_lag((options_.is_profile_linear() ? 1.0 : 0.5) + alpha + beta + load_lag);
+    wiring.explain_divergence("css takes each solver once a step: where the fluid's added mass outweighs the "
+                              "structure's it diverges at any step size; the scheme \"strong\" iterates");
   }
 
   void attach(Coupling& coupling) override
@@ -68,18 +77,13 @@ private:
   // Algorithm 1 (CSS), Jaiman et al. 2011
   void structure_first(const TimeStep& step)
   {
-    const auto& [alpha, beta, order, profile] = options_;
-    const auto& v = roles_.motion_on_fluid;
+    const double alpha = options_.alpha, beta = options_.beta;
+    const auto& v = roles_.structure_motion;
     const auto& p = roles_.load_on_structure;
 
-    roles_.structure_load.put(load_.committed(), step.end); // P_s^n stands for t^{n+1}
-    roles_.structure.step(step);                            // u_s, v_s at n+1
-    roles_.transfer_motion(step);
-    roles_.wall_velocity.put((1 - alpha) * v.now() + alpha * v.committed(), step.end); // v_f^{n+1}
-    roles_.mesh_motion.step(step);
-    roles_.fluid.step(step);
-    roles_.transfer_loads(step);
-    load_.now() = (1 - beta) * p.now() + beta * p.committed(); // P_s^{n+1}
+    apply(load_.committed(), step);                                         // P_s^n stands for t^{n+1}: u_s, v_s at n+1
+    roles_.move_fluid((1 - alpha) * v.now() + alpha * v.committed(), step); // v_f^{n+1}
+    load_.now() = (1 - beta) * p.now() + beta * p.committed();              // P_s^{n+1}
   }
 
   void fluid_first(const TimeStep& step)
@@ -87,14 +91,15 @@ private:
     const double beta = options_.beta;
     const auto& p = roles_.load_on_structure;
 
-    roles_.transfer_motion(step); // v_s^n
-    roles_.wall_velocity.put(roles_.motion_on_fluid.now(), step.end);
-    roles_.mesh_motion.step(step);
-    roles_.fluid.step(step);
-    roles_.transfer_loads(step);
+    roles_.move_fluid(roles_.structure_motion.committed(), step); // v_s^n
     load_.now() = (1 - beta) * p.now() + beta * p.committed();
-    roles_.structure_load.put(load_.now(), step.end);
-    roles_.structure.step(step);
+    apply(load_.now(), step);
+  }
+
+  template <class Values> void apply(const Values& load, const TimeStep& step) const
+  {
+    if (options_.load_time == "end") roles_.load_structure(load, step);
+    else roles_.load_structure_mean(load, step);
   }
 
   Options options_;

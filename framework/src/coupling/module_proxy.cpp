@@ -68,6 +68,7 @@ ReceivedField Coupling::received(const std::string& port, std::uint32_t pane) co
   const auto at = session_->find_field(port, true, pane);
   return {session_, at.window, at.field};
 }
+void Coupling::warn(const std::string& text) const { session_->warn(text); }
 DriverField Coupling::state(const std::string& name) const
 {
   const auto at = session_->find_state(name);

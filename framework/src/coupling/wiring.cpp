@@ -6,6 +6,12 @@
 
 namespace mullion {
 
+bool Wiring::has(const std::string& kind) const
+{
+  return std::any_of(instances_.begin(), instances_.end(),
+                     [&](const auto& instance) { return instance.first == kind; });
+}
+
 std::string Wiring::instance(const std::string& kind) const
 {
   const auto found =

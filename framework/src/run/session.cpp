@@ -41,13 +41,17 @@ void Session::begin(std::uint32_t index, Operation operation, std::uint32_t func
   module.function = function;
   module.step = step;
   module.stamp = stamp;
+  if (operation == Operation::define || operation == Operation::start) { // its own clock, from the beginning
+    module.step.begin = module.step.end = step.end + module.clock_offset;
+    module.stamp = stamp + module.clock_offset;
+  }
   const bool is_step = operation == Operation::step;
 
   auto& request = control_.modules[index].request;
   request.operation = operation;
   request.function = function;
   request.epoch = control_.epoch.load(std::memory_order_relaxed);
-  request.step = {step.index, step.begin, step.end, step.dt, step.iteration, 0};
+  request.step = {step.index, module.step.begin, module.step.end, step.dt, step.iteration, 0};
   request.flags = is_step ? static_cast<std::uint32_t>(shm::arm_state) : 0u;
   for (std::uint32_t i = 0; i < n_arguments; ++i) request.arguments[i] = arguments[i];
   for (const auto w : windows_written(module)) {
@@ -208,6 +212,7 @@ void Session::run_driver(const TimeStep& step)
 {
   driver_->step(step);
   for (std::uint32_t m = 0; m < modules_.size(); ++m) await(m); // what the driver forgot
+  if (ledger_) count(*this, *ledger_, step);
   if (state_window_ != shm::no_window) mark_written(state_window_, {step.end, step.index, 0, MULLION_INSTANT});
 }
 
@@ -308,6 +313,23 @@ void Session::stamp(FieldAddress at, double time, std::uint32_t kind)
                   case_.scheme, values.data()[bad], control_.windows[at.window].name,
                   windows_.view(at.window).fields()[at.field].name, bad % values.rows(), bad / values.rows(), time);
   mark_written(at.window, {time, control_.step + 1, 0, static_cast<std::int32_t>(kind)});
+}
+
+void Session::warn(const std::string& text) const { log::warning("driver", "{}: {}", case_.scheme, text); }
+
+std::optional<double> Session::ask(const std::string& instance, const std::string& function, double argument)
+{
+  const auto m = find_module(instance);
+  const auto& entries = *modules_[m].entries;
+  for (std::uint32_t f = 0; f < entries.n_functions; ++f) {
+    const auto& spec = entries.functions[f];
+    if (function != spec.name || spec.n_arguments != 1 || spec.n_results != 1) continue;
+    const double now = control_.time.load();
+    begin(m, Operation::call, f, {control_.step.load(), now, now, case_.dt, 0}, now, &argument, 1);
+    await(m);
+    return result(m);
+  }
+  return std::nullopt;
 }
 
 void Session::exchange(FieldAddress at)

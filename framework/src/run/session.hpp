@@ -8,6 +8,8 @@
 #include "module/module_runtime.hpp"
 #include "plugin/catalogue.hpp"
 #include "process/supervisor.hpp"
+#include "run/field_address.hpp"
+#include "run/ledger.hpp"
 #include "run/timings.hpp"
 #include "shm/control.hpp"
 #include "shm/window_map.hpp"
@@ -27,11 +29,6 @@ namespace mullion::run {
 struct SessionOptions {
   bool is_audited = false;   ///< poison what a step must write (--replay)
   bool has_deadlines = true; ///< false: --no-deadline
-};
-
-/// Where a field lives: ids of the control object and the window.
-struct FieldAddress {
-  std::uint32_t window, field;
 };
 
 class Session {
@@ -72,6 +69,7 @@ public:
   [[nodiscard]] Array write(FieldAddress at);
   void stamp(FieldAddress at, double time, std::uint32_t kind);
   void exchange(FieldAddress at); ///< somebody else reads it: check it for finite values
+  void warn(const std::string& text) const;
 
   // ---- onlookers within the orchestrator ----
   [[nodiscard]] shm::Control& control() { return control_; }
@@ -80,13 +78,20 @@ public:
   [[nodiscard]] const std::vector<CallTiming>& timings(std::uint32_t module) const { return modules_[module].timings; }
   /// Text for a post-mortem: the last lines of every host that died.
   [[nodiscard]] std::string post_mortem() const;
-  [[nodiscard]] bool needs_constant_step() const { return needs_constant_step_; }
+  /// What the driver declared: connections, state, net lag, …
+  [[nodiscard]] const Wiring& wiring() const { return *wiring_; }
+  [[nodiscard]] const std::optional<Ledger>& ledger() const { return ledger_; }
+  /// @returns no_window if the run has no driver/state
+  [[nodiscard]] std::uint32_t state_window() const { return state_window_; }
+  /// A number that a module answers, if it offers such a function of one number; else nothing.
+  [[nodiscard]] std::optional<double> ask(const std::string& instance, const std::string& function, double argument);
   /// The windows that this attempt wrote, in the order of their first writing: who differs first is the culprit.
   [[nodiscard]] const std::vector<std::uint32_t>& write_order() const { return write_order_; }
 
 private:
   struct Module {
     const ModuleCase* config = nullptr;
+    double clock_offset = 0.0; ///< [s] of its clock against the run's
     const mullion_module* entries = nullptr;
     std::unique_ptr<module::ModuleRuntime> runtime;           ///< inline
     std::shared_ptr<process::Host> host;                      ///< in a process
@@ -118,6 +123,7 @@ private:
   void make_window(const shm::WindowPlan& plan, std::uint32_t module);
   void make_companions();
   void make_driver_state();
+  void find_ledger();
   void make_driver();
   void attach_again(const std::vector<std::uint32_t>& modules);
   void find_conflicts();
@@ -143,9 +149,9 @@ private:
   std::optional<Wiring> wiring_;
   std::unique_ptr<Driver> driver_;
   std::uint32_t state_window_ = shm::no_window;
+  std::optional<Ledger> ledger_;
   std::vector<std::uint32_t> write_order_;
   std::uint32_t n_in_flight_ = 0;
-  bool needs_constant_step_ = false;
   bool is_running_ = false; ///< steps, rather than the start-up, whose deadline is longer
 };
 

@@ -27,7 +27,8 @@ std::uint32_t Session::register_window(const std::string& name, shm::Owner owner
   record.generation = 1;
   record.bytes = bytes;
   objects_.push_back(std::move(object));
-  shm::initialise_levels(control_, id, n_slots, case_.start_time, case_.dt);
+  const double offset = module == shm::no_module ? 0.0 : modules_[module].clock_offset;
+  shm::initialise_levels(control_, id, n_slots, case_.start_time + offset, case_.dt);
   control_.n_windows = id + 1;
   control_.directory_version.fetch_add(1, std::memory_order_release);
   log::debug("run", "window {}: {}, {} levels", name, shm::human_bytes(bytes), n_slots);
@@ -150,36 +151,86 @@ void Session::make_companions()
   }
 }
 
+void Session::find_ledger()
+{
+  // Interface windows on which both sides count their work.
+  const auto find = [&](const std::string& port) -> std::optional<LedgerSide> {
+    auto name = port;
+    name[name.find('.')] = '/';
+    LedgerSide side;
+    side.window = control_.find_window(name);
+    const auto& view = windows_.view(side.window);
+    const int work = view.find_field(0, "work"), impulse = view.find_field(0, "impulse");
+    const auto is_pane_output = [&](int field) {
+      return field >= 0 && view.fields()[field].location == MULLION_PANE && view.fields()[field].role == MULLION_OUTPUT;
+    };
+    if (!is_pane_output(work) || view.header().n_panes != 1) return std::nullopt;
+    side.work = {side.window, static_cast<std::uint32_t>(work)};
+    if (is_pane_output(impulse)) side.impulse = FieldAddress{side.window, static_cast<std::uint32_t>(impulse)};
+    return side;
+  };
+  if (case_.interfaces.size() != 1) return;
+  const auto fluid = find(case_.interfaces[0].fluid), structure = find(case_.interfaces[0].structure);
+  if (!fluid || !structure) return;
+  Ledger ledger{*fluid, *structure};
+  if (fluid->impulse && structure->impulse) {
+    const auto components = [&](const FieldAddress& at) {
+      return windows_.view(at.window).fields()[at.field].components;
+    };
+    if (components(*fluid->impulse) == components(*structure->impulse))
+      ledger.n_components = components(*fluid->impulse);
+  }
+  ledger_ = ledger;
+}
+
 void Session::make_driver_state()
 {
-  if (wiring_->states.empty()) return;
+  find_ledger();
+  if (wiring_->states.empty() && wiring_->squares.empty() && !ledger_) return;
   shm::WindowPlan plan;
   plan.name = "driver/state";
   plan.n_slots = static_cast<std::uint32_t>(wiring_->committed_state_levels) + 1;
   plan.panes.push_back({0, 0, 0, nullptr, nullptr, 0, 1});
-  for (const auto& state : wiring_->states) {
+  const auto add = [&](const std::string& name, const std::string& unit, std::uint32_t components,
+                       std::int64_t entities) {
     shm::FieldPlan field;
-    field.name = state.name;
-    field.unit.assign(1, '1'); // assign(const char*) here trips g++ 12's -Wrestrict
+    field.name = name;
+    field.unit = unit;
     field.location = MULLION_PANE;
-    field.entities = state.size;
-    if (!state.like.empty()) {
-      FieldAddress like{};
-      try {
-        like = find_field(state.like, true, 0);
-      } catch (const Error&) {
-        like = find_field(state.like, false, 0);
-      }
-      const auto& record = windows_.view(like.window).fields()[like.field];
-      field.components = record.components;
-      field.entities = record.entities;
-      field.unit = record.unit;
-    }
+    field.components = components;
+    field.entities = entities;
     plan.fields.push_back(std::move(field));
+  };
+  const auto record_of = [&](const std::string& port) {
+    FieldAddress like{};
+    try {
+      like = find_field(port, true, 0);
+    } catch (const Error&) {
+      like = find_field(port, false, 0);
+    }
+    return windows_.view(like.window).fields()[like.field];
+  };
+  for (const auto& state : wiring_->states) {
+    if (state.like.empty()) {
+      add(state.name, "1", 1, state.size);
+      continue;
+    }
+    const auto like = record_of(state.like);
+    add(state.name, like.unit, like.components, like.entities * state.size);
   }
+  for (const auto& square : wiring_->squares) {
+    std::int64_t rows = 0;
+    for (const auto& port : square.like) {
+      const auto like = record_of(port);
+      rows += like.components * like.entities;
+    }
+    add(square.name, "1", 1, rows <= square.largest ? rows * rows : 1);
+  }
+  if (ledger_) add(ledger_field, "1", 1, ledger_size(*ledger_));
   plan.dimension = 1;
   make_window(plan, shm::no_module);
   state_window_ = control_.n_windows - 1;
+  if (ledger_) ledger_->state = find_state(ledger_field);
 }
 
 void Session::find_conflicts()

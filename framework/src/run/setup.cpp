@@ -126,7 +126,6 @@ void Session::describe_modules()
   const auto values = config::to_values(case_.driver_parameters);
   const std::unique_ptr<Driver> driver(driver_library.driver().create(values.data()));
   driver->define(*wiring_);
-  needs_constant_step_ = wiring_->needs_constant_step;
 
   for (std::uint32_t m = 0; m < modules_.size(); ++m) {
     auto& module = modules_[m];
@@ -141,6 +140,8 @@ void Session::describe_modules()
     copy(record.plugin, module.config->plugin, "plug-in name");
     copy(record.path, module.config->path, "plug-in path");
     record.is_inline = module.config->is_process ? 0 : 1;
+    for (const auto& offset : wiring_->clock_offsets)
+      if (offset.instance == module.config->instance) module.clock_offset = offset.steps * case_.dt;
     for (const auto& pair : wiring_->interfaces())
       for (const auto& path : {pair.fluid, pair.structure})
         if (const auto [instance, window] = split_window(path); instance == module.config->instance)

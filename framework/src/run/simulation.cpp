@@ -108,7 +108,7 @@ int orchestrate(const RunOptions& options, shm::Control& control, int control_fd
   try {
     supervisor.serve(socket, [&](const std::string& line) { return answer(control, supervisor, line); });
     session.start_fresh();
-    const run::TimePlan plan(c, session.needs_constant_step());
+    const run::TimePlan plan(c, session.wiring().needs_constant_step);
     control.n_steps = plan.n_steps();
     control.state = shm::RunState::running;
     recorder.begin(session);

@@ -33,6 +33,7 @@ std::vector<FieldSpec> Euler1d::fields()
       output("wall", "sound_speed", element, scalar, "m/s", "at the end of the step"),
       output("wall", "wall_spacing", element, scalar, "m", "length dx_n of the cell at the wall"),
       output("wall", "work", pane, scalar, "J", "work of (p - p_ref) on the wall in this step"),
+      output("wall", "impulse", pane, vector, "N s", "of (p - p_ref) n_f on the wall in this step"),
       fixed("wall", "volume_node", node, scalar, "1", "number of the node in volume").integer(),
   };
 }
@@ -47,7 +48,7 @@ std::vector<InputSpec> Euler1d::inputs()
   };
 }
 
-void Euler1d::define(const TimeStep&)
+void Euler1d::define(const TimeStep& initial)
 {
   const int n = options_.cells;
   Coordinates nodes(1, n + 1);
@@ -61,12 +62,12 @@ void Euler1d::define(const TimeStep&)
     set_rest(working_state(), ale_.gas, ale_.reference, options_.length);
   } else {
     const AcousticMode mode{options_.mode_amplitude, options_.mode_angular_frequency, options_.length};
-    set_acoustic_mode(working_state(), ale_.gas, ale_.reference, mode, options_.mode_time,
+    set_acoustic_mode(working_state(), ale_.gas, ale_.reference, mode, initial.end, // -dt/2 where the clock is offset
                       options_.length + options_.mode_amplitude);
   }
   const double wall_velocity = 0.0;
   const auto wall = wall_state(working_state(), ale_.gas, wall_velocity);
-  write_outputs(wall_velocity, wall.pressure, 0.0);
+  write_outputs(wall_velocity, wall.pressure, 0.0, 0.0);
 }
 
 void Euler1d::attach()
@@ -96,6 +97,7 @@ void Euler1d::look_up()
   sound_speed_ = field("wall", "sound_speed");
   wall_spacing_ = field("wall", "wall_spacing");
   work_ = field("wall", "work");
+  impulse_ = field("wall", "impulse");
   node_velocity_ = input("volume", "velocity");
   evaluation_velocity_ = input("wall", "evaluation_velocity");
 }
@@ -128,10 +130,11 @@ void Euler1d::step(const TimeStep& step)
                             bad->cell, options_.cells, state.node_x[bad->cell], to_string(bad->fault), bad->value));
   const double end_velocity = w_begin_.back(); // after the swap: at the step's end
   const double wall_velocity = evaluation_velocity_.is_connected() ? evaluation_velocity_.newest()(0, 0) : end_velocity;
-  write_outputs(wall_velocity, wall.impulse / step.dt, wall.work - options_.reference_pressure * wall.swept_volume);
+  write_outputs(wall_velocity, wall.impulse / step.dt, wall.work - options_.reference_pressure * wall.swept_volume,
+                wall.impulse - options_.reference_pressure * step.dt);
 }
 
-void Euler1d::write_outputs(double wall_velocity, double mean_pressure, double work) const
+void Euler1d::write_outputs(double wall_velocity, double mean_pressure, double work, double impulse) const
 {
   const auto state = working_state();
   cell_fields(state, ale_.gas, flat(density_.now()), flat(velocity_.now()), flat(pressure_.now()));
@@ -145,6 +148,7 @@ void Euler1d::write_outputs(double wall_velocity, double mean_pressure, double w
   sound_speed_.now()(0, 0) = wall.sound_speed;
   wall_spacing_.now()(0, 0) = wall.spacing;
   work_.now()(0, 0) = work;
+  impulse_.now()(0, 0) = impulse;
 }
 
 } // namespace mullion::euler_1d

@@ -26,7 +26,6 @@ public:
     std::string initial = "rest";
     double mode_amplitude = 1.0e-6;
     double mode_angular_frequency = 0.0;
-    double mode_time = 0.0;
     int substeps = 1;
     double reference_pressure = 0.0;
 
@@ -47,8 +46,6 @@ public:
           parameter("mode_amplitude", &Options::mode_amplitude, "m", "initial = mode: wall displacement A"),
           parameter("mode_angular_frequency", &Options::mode_angular_frequency, "rad/s",
                     "initial = mode: eigenvalue omega of the coupled problem", at_least(0.0)),
-          parameter("mode_time", &Options::mode_time, "s",
-                    "initial = mode: instant of the fluid values (-dt/2 for half-step-offset schemes)"),
           parameter("substeps", &Options::substeps, "1", "fluid steps within one coupling step", at_least(1)),
           parameter("reference_pressure", &Options::reference_pressure, "Pa",
                     "p_ref, subtracted from the exported traction; given in [coupling]")};
@@ -68,7 +65,7 @@ private:
   void look_up();
   [[nodiscard]] State working_state() const;
   /// Everything that is recomputed from the state: cell values, totals, wall values.
-  void write_outputs(double wall_velocity, double mean_pressure, double work) const;
+  void write_outputs(double wall_velocity, double mean_pressure, double work, double impulse) const;
 
   Options options_;
   AleOptions ale_;
@@ -76,7 +73,7 @@ private:
   std::vector<double> w_begin_, w_end_; ///< scratch
   Field coordinates_, mass_, momentum_, energy_, length_;
   Field density_, velocity_, pressure_, total_mass_, total_energy_;
-  Field traction_, traction_mean_, pressure_gradient_, sound_speed_, wall_spacing_, work_;
+  Field traction_, traction_mean_, pressure_gradient_, sound_speed_, wall_spacing_, work_, impulse_;
   Input node_velocity_, evaluation_velocity_;
 };
 

@@ -2,8 +2,10 @@
 
 #include "initial_states.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace mullion::elastic_bar {
 
@@ -32,6 +34,7 @@ std::vector<FieldSpec> ElasticBar::fields()
       state("wet", "acceleration", node, vector, "m/s^2", "a of the loaded end").overwritten(),
       state("wet", "applied_load", pane, scalar, "N", "load on the loaded end, as the last step used it").overwritten(),
       output("wet", "work", pane, scalar, "J", "work of the load in this step"),
+      output("wet", "impulse", pane, vector, "N s", "of the load in this step"),
   };
 }
 
@@ -54,7 +57,7 @@ void ElasticBar::define(const TimeStep&)
   look_up();
   if (options_.initial == "rest") set_rest(bar_, working_motion(), 0.0);
   else set_mode(bar_, working_motion(), options_.mode_amplitude, options_.mode_angular_frequency, 0.0);
-  write_outputs(0.0, 0.0);
+  write_outputs(0.0, 0.0, 0.0);
 }
 
 void ElasticBar::attach() { look_up(); }
@@ -70,6 +73,7 @@ void ElasticBar::look_up()
   wet_acceleration_ = field("wet", "acceleration");
   applied_load_ = field("wet", "applied_load");
   work_ = field("wet", "work");
+  impulse_ = field("wet", "impulse");
   traction_ = input("wet", "traction");
   load_ = input("wet", "load");
 }
@@ -79,7 +83,7 @@ void ElasticBar::start(const TimeStep& initial)
   // The first acceleration is in equilibrium with the first load, which only the driver knows.
   const double load = load_at(initial.end);
   equilibrium_acceleration(bar_, flat(displacement_.now()), load, flat(acceleration_.now()));
-  write_outputs(load, 0.0);
+  write_outputs(load, 0.0, 0.0);
 }
 
 void ElasticBar::step(const TimeStep& step)
@@ -94,28 +98,40 @@ void ElasticBar::step(const TimeStep& step)
                   dt, max_dt());
   if (is_implicit && (!newmark_ || newmark_->dt() != dt)) newmark_.emplace(bar_, dt);
 
-  double work = 0.0, load_before = applied_load_.committed()(0, 0), load = load_before;
+  double work = 0.0, impulse = 0.0, load_before = applied_load_.committed()(0, 0), load = load_before;
   for (int m = 1; m <= n; ++m) {
     load = load_at(m == n ? step.end : step.begin + m * dt);
     const double u_before = motion.displacement[0];
+    double mean_load = load;
     if (is_mean_load()) {
       if (is_implicit) newmark_->step_mean(motion, load);
       else central_difference_step_mean(bar_, motion, dt, load);
-      work += interface_work(load, u_before, motion.displacement[0]);
     } else {
       if (is_implicit) newmark_->step(motion, load);
       else central_difference_step(bar_, motion, dt, load);
-      work += interface_work(0.5 * (load_before + load), u_before, motion.displacement[0]);
+      mean_load = 0.5 * (load_before + load);
     }
+    work += interface_work(mean_load, u_before, motion.displacement[0]);
+    impulse += mean_load * dt;
     load_before = load;
   }
-  write_outputs(load, work);
+  write_outputs(load, work, impulse);
 }
 
 double ElasticBar::max_dt()
 {
   if (options_.integrator == "newmark") return std::numeric_limits<double>::max();
   return bar_.element_length() / std::sqrt(bar_.youngs_modulus / bar_.density); // c_s dt / dx <= 1
+}
+
+double ElasticBar::vacuum_frequency(double step)
+{
+  // Lumped linear elements: omega = (2 c_s / dx) sin(k dx / 2) with k L_s = pi / 2 (one end held) or pi (both free).
+  const double dx = bar_.element_length(), dt = step / options_.substeps;
+  const double k = std::numbers::pi / bar_.length * (bar_.far_end == FarEnd::clamped ? 0.5 : 1.0);
+  const double omega = 2.0 * std::sqrt(bar_.youngs_modulus / bar_.density) / dx * std::sin(0.5 * k * dx);
+  const double half = 0.5 * omega * dt; // what the integrator makes of it
+  return (options_.integrator == "newmark" ? std::atan(half) : std::asin(std::min(1.0, half))) / (std::numbers::pi * dt);
 }
 
 Motion ElasticBar::working_motion() const
@@ -134,7 +150,7 @@ double ElasticBar::load_at(double t)
 
 bool ElasticBar::is_mean_load() { return traction_.is_connected() ? traction_.is_mean() : load_.is_mean(); }
 
-void ElasticBar::write_outputs(double load, double work) const
+void ElasticBar::write_outputs(double load, double work, double impulse) const
 {
   const auto motion = working_motion();
   energy_.now()(0, 0) = kinetic_energy(bar_, motion.velocity) + potential_energy(bar_, motion.displacement);
@@ -143,6 +159,7 @@ void ElasticBar::write_outputs(double load, double work) const
   wet_acceleration_.now()(0, 0) = motion.acceleration[0];
   applied_load_.now()(0, 0) = load;
   work_.now()(0, 0) = work;
+  impulse_.now()(0, 0) = impulse;
 }
 
 } // namespace mullion::elastic_bar

@@ -55,7 +55,10 @@ public:
   static std::vector<InputSpec> inputs();
   static constexpr auto functions()
   {
-    return std::tuple{query("max_dt", &ElasticBar::max_dt, "largest stable step of the integrator [s]")};
+    return std::tuple{query("max_dt", &ElasticBar::max_dt, "largest stable step of the integrator [s]"),
+                      query("vacuum_frequency", &ElasticBar::vacuum_frequency,
+                            "lowest frequency without a load [Hz], as the integrator runs it in coupling steps of so "
+                            "many s")};
   }
 
   void define(const TimeStep& initial) override;
@@ -64,6 +67,7 @@ public:
   void step(const TimeStep& step) override;
 
   double max_dt();
+  double vacuum_frequency(double step);
 
 private:
   void look_up();
@@ -71,13 +75,13 @@ private:
   /// F on node 0, along +x, at time t [N].
   [[nodiscard]] double load_at(double t);
   [[nodiscard]] bool is_mean_load();
-  void write_outputs(double load, double work) const;
+  void write_outputs(double load, double work, double impulse) const;
 
   Options options_;
   Bar bar_;
   std::optional<Newmark> newmark_; ///< a function of bar and dt alone
   Field displacement_, velocity_, acceleration_, energy_;
-  Field wet_displacement_, wet_velocity_, wet_acceleration_, applied_load_, work_;
+  Field wet_displacement_, wet_velocity_, wet_acceleration_, applied_load_, work_, impulse_;
   Input traction_, load_;
 };
 

@@ -9,6 +9,7 @@ std::vector<FieldSpec> PointTransfer::fields()
   return {
       output("structure_side", "traction", Location::node, vector, "Pa", "acts on the structure"),
       output("fluid_side", "velocity", Location::node, vector, "m/s", "of the wall"),
+      output("fluid_side", "displacement", Location::node, vector, "m", "of the wall; 0 if none is received"),
   };
 }
 
@@ -16,7 +17,8 @@ std::vector<InputSpec> PointTransfer::inputs()
 {
   return {
       receive("fluid_side", "traction", Location::element, vector, "Pa", "acts on the structure"),
-      receive("structure_side", "velocity", Location::node, vector, "m/s", "of the wet surface"),
+      receive("structure_side", "velocity", Location::node, vector, "m/s", "of the wet surface").optional(),
+      receive("structure_side", "displacement", Location::node, vector, "m", "of the wet surface").optional(),
   };
 }
 
@@ -31,6 +33,7 @@ void PointTransfer::define(const TimeStep&)
   make_window("structure_side", {structure});
   field("structure_side", "traction").now().setZero();
   field("fluid_side", "velocity").now().setZero();
+  field("fluid_side", "displacement").now().setZero();
 }
 
 void PointTransfer::attach()
@@ -64,8 +67,10 @@ void PointTransfer::attach()
     for (Eigen::Index e = 0; e < block.connectivity.cols(); ++e) node_of_face_.push_back(block.connectivity(0, e));
   traction_ = field("structure_side", "traction");
   velocity_ = field("fluid_side", "velocity");
+  displacement_ = field("fluid_side", "displacement");
   received_traction_ = input("fluid_side", "traction");
   received_velocity_ = input("structure_side", "velocity");
+  received_displacement_ = input("structure_side", "displacement");
 }
 
 void PointTransfer::loads(const TimeStep&)
@@ -79,10 +84,18 @@ void PointTransfer::loads(const TimeStep&)
 
 void PointTransfer::motion(const TimeStep&)
 {
-  const auto from = received_velocity_.newest();
-  auto to = velocity_.now();
-  for (std::size_t i = 0; i < structure_of_fluid_.size(); ++i)
-    to.col(static_cast<Eigen::Index>(i)) = from.col(structure_of_fluid_[i]);
+  const auto carry = [&](const Input& received, const Field& result) {
+    auto to = result.now();
+    if (!received.is_connected()) {
+      to.setZero();
+      return;
+    }
+    const auto from = received.newest();
+    for (std::size_t i = 0; i < structure_of_fluid_.size(); ++i)
+      to.col(static_cast<Eigen::Index>(i)) = from.col(structure_of_fluid_[i]);
+  };
+  carry(received_velocity_, velocity_);
+  carry(received_displacement_, displacement_);
 }
 
 } // namespace mullion::point_transfer

@@ -27,7 +27,7 @@ public:
   static constexpr auto functions()
   {
     return std::tuple{action("loads", &PointTransfer::loads, "structure_side", "traction, fluid to structure"),
-                      action("motion", &PointTransfer::motion, "fluid_side", "velocity, structure to fluid")};
+                      action("motion", &PointTransfer::motion, "fluid_side", "velocity and displacement, structure to fluid")};
   }
 
   void define(const TimeStep& initial) override;
@@ -39,8 +39,8 @@ private:
   Options options_;
   std::vector<Index> structure_of_fluid_; ///< per fluid point; derived from the reference coordinates
   std::vector<Index> node_of_face_;       ///< per fluid point element
-  Field traction_, velocity_;
-  Input received_traction_, received_velocity_;
+  Field traction_, velocity_, displacement_;
+  Input received_traction_, received_velocity_, received_displacement_;
 };
 
 } // namespace mullion::point_transfer

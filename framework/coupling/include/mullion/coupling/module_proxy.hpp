@@ -142,6 +142,7 @@ private:
 /// Where a driver finds its proxies and handles, in attach.
 class Coupling {
 public:
+  Coupling() = default;
   explicit Coupling(run::Session* session) : session_(session) {}
 
   [[nodiscard]] ModuleProxy module(const std::string& instance) const;
@@ -152,9 +153,11 @@ public:
   [[nodiscard]] ModuleField field(const std::string& port, std::uint32_t pane = 0) const;
   [[nodiscard]] ReceivedField received(const std::string& port, std::uint32_t pane = 0) const;
   [[nodiscard]] DriverField state(const std::string& name) const;
+  /// Tell the user, with the driver's name, without ending the run.
+  void warn(const std::string& text) const;
 
 private:
-  run::Session* session_;
+  run::Session* session_ = nullptr;
 };
 
 } // namespace mullion

@@ -1,0 +1,65 @@
+#include <mullion/coupling/convergence.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace mullion {
+
+namespace {
+constexpr double largest_growth = 1e6; // of a change, against the step's first
+} // namespace
+
+void Convergence::begin_step()
+{
+  for (auto& field : fields_) field = {};
+}
+
+void Convergence::compare(std::size_t field, int iteration, const ConstArray& now, const ConstArray& before)
+{
+  auto& last = fields_[field];
+  const auto& tolerance = tolerances_[field];
+  last.change = (now - before).norm();
+  last.size = now.norm();
+  const bool is_finite = std::isfinite(last.change) && std::isfinite(last.size);
+  if (is_finite && !last.has_first) {
+    last.first_change = last.change;
+    last.has_first = true;
+  }
+  last.has_passed = is_finite && last.change <= tolerance.absolute + tolerance.relative * last.size;
+  const bool has_grown = last.change > largest_growth * std::max(last.first_change, tolerance.absolute) &&
+                         last.first_change > 0.0 && !last.has_passed;
+  if (is_finite && !has_grown) return;
+  Eigen::Index component = 0, entity = 0;
+  double largest = -1.0;
+  for (Eigen::Index j = 0; j < now.cols(); ++j)
+    for (Eigen::Index i = 0; i < now.rows(); ++i) {
+      const double moved = std::abs(now(i, j) - before(i, j));
+      if (moved <= largest) continue; // NaN compares false: it is taken
+      largest = moved, component = i, entity = j;
+      if (!std::isfinite(moved)) break;
+    }
+  throw Error(Errc::numeric,
+              fmt::format("the iteration has diverged: in iteration {} the {} changed by {:.3e}, {} in the first; most "
+                          "at [{}, {}] (component, entity), from {} to {}; a smaller relaxation, or acceleration = "
+                          "\"iqn_ils\", may help",
+                          iteration + 1, tolerance.field, last.change, fmt::format("{:.3e}", last.first_change),
+                          component, entity, before(component, entity), now(component, entity)));
+}
+
+bool Convergence::is_reached() const
+{
+  for (const auto& field : fields_)
+    if (!field.has_passed) return false;
+  return true;
+}
+
+std::string Convergence::describe() const
+{
+  std::string text;
+  for (std::size_t f = 0; f < fields_.size(); ++f)
+    text += fmt::format("{}{} changed by {:.3e}, {:.3e} allowed", f == 0 ? "" : "; ", tolerances_[f].field,
+                        fields_[f].change, tolerances_[f].absolute + tolerances_[f].relative * fields_[f].size);
+  return text;
+}
+
+} // namespace mullion
