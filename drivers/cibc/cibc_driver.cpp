@@ -118,8 +118,8 @@ public:
   }
 
 private:
-  // Algorithm 3, collocated. consistent: velocity from v_s^n, dP = dt (P_t - r/omega); printed: velocity from v_s^{n+1},
-  // dP = dt (P_s,t - r/omega).
+  // Algorithm 3, collocated. consistent: velocity from v_s^n, dP = dt (P_t - r/omega); printed: velocity from
+  // v_s^{n+1}, dP = dt (P_s,t - r/omega).
   void collocated(const TimeStep& step)
   {
     const bool is_printed = options_.reading == "printed";
@@ -181,8 +181,7 @@ private:
   [[nodiscard]] Values residual(const ConstArray& structure_acceleration, const TimeStep& step) const
   {
     roles_.send_motion(structure_acceleration, step); // the operator that carries velocities carries their rates
-    return acceleration_residual(options_.fluid_density, gradient_.now().array(),
-                                 roles_.motion_on_fluid.now().array());
+    return acceleration_residual(options_.fluid_density, gradient_.now().array(), roles_.motion_on_fluid.now().array());
   }
   /// The traction that goes to the structure's side.
   void apply(const Values& traction, const TimeStep& step) const
@@ -225,14 +224,13 @@ private:
       const auto allowed = window(courant);
       const auto bounds = fmt::format("wall point {}, t = {} s: c dt/dx = {:.4g}, kappa = omega c = {:.4g}; admissible "
                                       "are {:.4g} <= kappa <= {:.4g}, that is {:.4g} <= omega <= {:.4g} s/m",
-                                      face, step.begin, courant, kappa, allowed.lower, allowed.upper,
-                                      allowed.lower / c, allowed.upper / c);
+                                      face, step.begin, courant, kappa, allowed.lower, allowed.upper, allowed.lower / c,
+                                      allowed.upper / c);
       if (courant > allowed.largest_courant)
         complain(fmt::format("{}, with c dt/dx <= {}; take a smaller step, or half_offset = true, which has no such "
                              "limit",
                              bounds, allowed.largest_courant));
-      else if (kappa < allowed.lower || kappa > allowed.upper)
-        complain(bounds);
+      else if (kappa < allowed.lower || kappa > allowed.upper) complain(bounds);
       else if (kappa < allowed.advisable && !has_warned_)
         warn(fmt::format("{}; below kappa = {:.4g} grid-scale noise may grow", bounds, allowed.advisable));
     }

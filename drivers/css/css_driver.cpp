@@ -20,12 +20,12 @@ public:
     static constexpr auto table()
     {
       return std::tuple_cat(
-          std::tuple{parameter("alpha", &Options::alpha, "1",
-                               "share of the old wall velocity in the one that the fluid gets", between(0.0, 1.0)),
-                     parameter("beta", &Options::beta, "1",
-                               "share of the old traction in the load that the structure gets", between(0.0, 1.0)),
-                     parameter("order", &Options::order, "", "who moves first",
-                               one_of("structure_first", "fluid_first"))},
+          std::tuple{
+              parameter("alpha", &Options::alpha, "1", "share of the old wall velocity in the one that the fluid gets",
+                        between(0.0, 1.0)),
+              parameter("beta", &Options::beta, "1", "share of the old traction in the load that the structure gets",
+                        between(0.0, 1.0)),
+              parameter("order", &Options::order, "", "who moves first", one_of("structure_first", "fluid_first"))},
           profile_option(), sampling_option(),
           std::tuple{parameter("load_time", &Options::load_time, "",
                                "the structure takes the load for the end of its step, or for its mean",

@@ -46,8 +46,7 @@ public:
     wiring.state_like("load", names_.wet + ".traction");
     wiring.state_numbers("previous_dt", 1);
     const double motion_lag = (options_.is_profile_linear() ? 0.0 : -0.5) + 1.0 - (a0 - a1);
-    wiring.state_net_lag(motion_lag + options_.sampling_lag() +
-                         (options_.load == "mean" ? beta : beta / (1.0 - beta)));
+    wiring.state_net_lag(motion_lag + options_.sampling_lag() + (options_.load == "mean" ? beta : beta / (1.0 - beta)));
     wiring.explain_divergence("gss takes each solver once a step: where the fluid's added mass outweighs the "
                               "structure's it diverges at any step size; the scheme \"strong\" iterates");
   }
@@ -73,9 +72,9 @@ public:
     const auto& [v, a, p] = std::tie(roles_.structure_motion, acceleration_, roles_.load_on_structure);
     const double beta = options_.beta, ratio = step.dt / previous_dt_.committed()(0, 0);
 
-    roles_.move_fluid(predicted_velocity(v.committed(), a.committed(), a.committed(2), step.dt, ratio, options_.a0,
-                                         options_.a1),
-                      step);
+    roles_.move_fluid(
+        predicted_velocity(v.committed(), a.committed(), a.committed(2), step.dt, ratio, options_.a0, options_.a1),
+        step);
     const auto old = options_.load == "mean" ? p.committed() : load_.committed();
     load_.now() = (1 - beta) * p.now() + beta * old;
     roles_.load_structure(load_.now(), step);

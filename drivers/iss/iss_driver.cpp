@@ -1,5 +1,5 @@
-// The improved serial staggered scheme (ISS): fluid and structure leap over one another like a leap-frog, the fluid half
-// a step behind (Lesoinne and Farhat 1998; Jaiman et al. 2011, section 4.3).
+// The improved serial staggered scheme (ISS): fluid and structure leap over one another like a leap-frog, the fluid
+// half a step behind (Lesoinne and Farhat 1998; Jaiman et al. 2011, section 4.3).
 //
 // Second order in time without iterating: the fluid's window is centred on the time of the velocity that moves it, the
 // structure's step on the time of the traction that loads it. The exported pressure goes with the wall velocity of its
@@ -18,11 +18,10 @@ public:
     Options() { load_interpolation = "constant"; }
     static constexpr auto table()
     {
-      return std::tuple_cat(
-          std::tuple{parameter("starts_early", &Options::starts_early, "", HalfStepClock::meaning),
-                     parameter("w_end", &Options::w_end, "",
-                               "the exported pressure goes with the wall velocity at its own time")},
-          sampling_option());
+      return std::tuple_cat(std::tuple{parameter("starts_early", &Options::starts_early, "", HalfStepClock::meaning),
+                                       parameter("w_end", &Options::w_end, "",
+                                                 "the exported pressure goes with the wall velocity at its own time")},
+                            sampling_option());
     }
   };
   explicit Iss(const Options& options) : options_(options) {}
@@ -55,8 +54,8 @@ public:
     const auto window = clock_.window(step); // around t^n
 
     if (options_.w_end) roles_.send_evaluation_velocity(v.committed() + 0.5 * step.dt * a.committed(), window);
-    roles_.move_fluid(v.committed(), window);                              // v_s^n; P^{n+1/2}
-    roles_.load_structure_mean(roles_.load_on_structure.now(), step);      // n -> n+1
+    roles_.move_fluid(v.committed(), window);                         // v_s^n; P^{n+1/2}
+    roles_.load_structure_mean(roles_.load_on_structure.now(), step); // n -> n+1
     clock_.end_step(step);
   }
 

@@ -33,8 +33,8 @@ public:
                         one_of("constant", "aitken", "iqn_ils", "iqn_mvj")),
               parameter("predictor", &Options::predictor, "", "first guess, extrapolated from the last steps",
                         one_of("constant", "linear", "quadratic")),
-              parameter("relaxation", &Options::relaxation, "1", "constant: theta; aitken: theta of the first iteration",
-                        above(0.0)),
+              parameter("relaxation", &Options::relaxation, "1",
+                        "constant: theta; aitken: theta of the first iteration", above(0.0)),
               parameter("first_relaxation", &Options::first_relaxation, "1",
                         "quasi-Newton: theta while nothing is known", above(0.0)),
               parameter("reuse", &Options::reuse, "1", "iqn_ils: steps whose columns are kept", between(0.0, 1000.0)),
@@ -64,8 +64,7 @@ public:
         convergence_({{options.motion, options.motion_tolerance, options.motion_floor},
                       {"traction", options.traction_tolerance, options.traction_floor}}),
         acceleration_({options.acceleration, options.relaxation, options.first_relaxation, options.reuse,
-                       options.max_columns,
-                       options.filter > 0.0 ? options.filter : (is_parallel_ ? 1e-3 : 1e-2)})
+                       options.max_columns, options.filter > 0.0 ? options.filter : (is_parallel_ ? 1e-3 : 1e-2)})
   {
   }
 
@@ -100,13 +99,13 @@ public:
   {
     convergence_.begin_step();
     acceleration_.begin_step(step);
-    auto x = predicted(step);
     load_before_ = roles_.load_on_structure.committed();
+    Vector x = predicted(step), result;
     int k = 0;
     for (;; ++k) {
       TimeStep iteration = step;
       iteration.iteration = k;
-      const auto result = evaluate(x, iteration); // H(x_k)
+      result = evaluate(x, iteration); // H(x_k)
       if (has_converged(x, k)) break;
       if (k + 1 == options_.max_iterations) {
         give_up(step);
@@ -114,7 +113,7 @@ public:
       }
       x = acceleration_.next(x, result);
     }
-    acceleration_.end_step(step);
+    acceleration_.end_step(step, x, result);
     iterations_.now()(0, 0) = k + 1;
     previous_dt_.now()(0, 0) = step.dt;
   }
@@ -145,7 +144,9 @@ private:
   Vector predicted(const TimeStep& step) const
   {
     const auto& [v, p] = std::tie(roles_.structure_motion, roles_.load_on_structure);
-    const auto at = [&](int back) { return joined(v.committed(back), p.committed(back)); };
+    const auto at = [&](int back) {
+      return is_parallel_ ? joined(v.committed(back), p.committed(back)) : joined(v.committed(back), p.committed());
+    };
     const double ratio = step.dt / previous_dt_.committed()(0, 0);
     const bool is_constant = options_.predictor == "constant" || step.index < 2;
     const bool is_quadratic = options_.predictor == "quadratic" && step.index > 2 && ratio == 1.0;
@@ -161,6 +162,9 @@ private:
       return ConstArray(values.data(), values.rows(), values.cols());
     };
     convergence_.compare(0, k, roles_.structure_motion.now(), as_array(motion));
+    // Serial: the traction of this evaluation against that of the one before. Parallel: against the one that the
+    // structure got; two evaluations in a row may agree on a traction that it never felt.
+    if (is_parallel_) load_before_ = load_of(x);
     convergence_.compare(1, k, roles_.load_on_structure.now(), as_array(load_before_));
     load_before_ = roles_.load_on_structure.now();
     return convergence_.is_reached();
@@ -168,8 +172,8 @@ private:
 
   void give_up(const TimeStep& step) const
   {
-    const auto text = fmt::format("step {} (t = {} s) has not converged after {} iterations: {}", step.index, step.begin,
-                                  options_.max_iterations, convergence_.describe());
+    const auto text = fmt::format("step {} (t = {} s) has not converged after {} iterations: {}", step.index,
+                                  step.begin, options_.max_iterations, convergence_.describe());
     MULLION_REQUIRE(options_.on_not_converged != "fail", Errc::numeric,
                     "{}; allow more (max_iterations), or accept it (on_not_converged = \"accept_with_warning\")", text);
     coupling_.warn(text + "; accepted");

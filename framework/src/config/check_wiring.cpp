@@ -207,7 +207,8 @@ private:
       if (state.name.empty() || state.name.size() >= MULLION_MAX_NAME)
         report("the state field '{}' needs a name of 1 to {} bytes", state.name, MULLION_MAX_NAME - 1);
       if (!names.insert(state.name).second) report("declares the state field '{}' twice", state.name);
-      if (state.name == "ledger") report("declares the state field 'ledger', which is Mullion's own; choose another name");
+      if (state.name == "ledger")
+        report("declares the state field 'ledger', which is Mullion's own; choose another name");
       if (state.like.empty() && state.size < 1)
         report("the state field '{}' has {} numbers; expected at least 1", state.name, state.size);
       if (!state.like.empty() && state.size < 1)

@@ -16,10 +16,13 @@ constexpr const char* example = "interfaces = [[\"fluid.wall\", \"structure.wet\
 
 struct CouplingOptions {
   double reference_pressure = 0.0;
+  double displacement_limit = 0.0;
   static constexpr auto table()
   {
     return std::tuple{parameter("reference_pressure", &CouplingOptions::reference_pressure, "Pa",
-                                "pressure that the fluid subtracts from its wall traction")};
+                                "pressure that the fluid subtracts from its wall traction"),
+                      parameter("displacement_limit", &CouplingOptions::displacement_limit, "m",
+                                "the run ends when the wet surface moves further; 0: no limit", at_least(0.0))};
   }
 };
 
@@ -133,6 +136,7 @@ bool read_coupling(CaseReader& reader, bool are_modules_known)
   const auto values = read_parameters(*coupling, {"[coupling]", ""}, detail::parameter_specs<CouplingOptions>(),
                                       {"interfaces"}, reader.diagnostics);
   reader.value.reference_pressure = std::get<double>(values[0].value);
+  reader.value.displacement_limit = std::get<double>(values[1].value);
   const auto* given = coupling->table()->find(reference_pressure);
   if (given == nullptr || values[0].is_given) // a wrong value was reported already
     distribute_reference_pressure(reader, coupling->place, given == nullptr ? nullptr : &given->value);

@@ -3,7 +3,6 @@
 #include <mullion/sdk/error.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace mullion {
 namespace {
@@ -63,6 +62,12 @@ Vector solve_upper(const Matrix& r, Vector b)
 }
 
 } // namespace
+
+template <class Body> void Acceleration::for_each_field(Body&& body) const
+{
+  Eigen::Index at = 0;
+  for (std::size_t p = 0; p < sizes_.size(); at += sizes_[p++]) body(p, at, sizes_[p]);
+}
 
 void Acceleration::define(Wiring& wiring, const std::vector<std::string>& ports)
 {
@@ -132,10 +137,7 @@ Vector Acceleration::next(const Vector& x, const Vector& result)
     }
     next = x + theta_ * residual;
   } else {
-    double total = residual.norm();
-    for (std::size_t p = 0, at = 0; p < sizes_.size(); at += static_cast<std::size_t>(sizes_[p++]))
-      if (total > 0.0)
-        field_sums_[p] += residual.segment(static_cast<Eigen::Index>(at), sizes_[p]).norm() / total;
+    weigh_fields(residual);
     if (k > 0) add_columns(residual, result);
     next = has_jacobian_ ? jacobian_step(residual, result) : least_squares_step(residual, result);
   }
@@ -144,9 +146,10 @@ Vector Acceleration::next(const Vector& x, const Vector& result)
   return next;
 }
 
-void Acceleration::end_step(const TimeStep& step)
+void Acceleration::end_step(const TimeStep& step, const Vector& x, const Vector& result)
 {
   if (!is_quasi_newton()) return;
+  if (iteration_ > 0) add_columns(result - x, result); // the last evaluation is the best one; alone it makes no column
   last_dt_.now()(0, 0) = step.dt;
   if (!has_jacobian_) return store_columns();
   // J = J_prev + (W - J_prev V)(V^T V)^-1 V^T, with V's rows weighted as in the iterations.
@@ -168,6 +171,17 @@ void Acceleration::end_step(const TimeStep& step)
   jacobian += w * inverse;
 }
 
+void Acceleration::weigh_fields(const Vector& residual)
+{
+  // An iteration in which one field has no residual at all says nothing about the fields' relative size: at the very
+  // start, from rest, it would drown the smaller field for the whole step.
+  std::vector<double> norms;
+  for_each_field(
+      [&](std::size_t, Eigen::Index at, Eigen::Index n) { norms.push_back(residual.segment(at, n).norm()); });
+  if (std::any_of(norms.begin(), norms.end(), [](double norm) { return norm == 0.0; })) return;
+  for (std::size_t p = 0; p < norms.size(); ++p) field_sums_[p] += norms[p] / residual.norm();
+}
+
 void Acceleration::add_columns(const Vector& residual, const Vector& result)
 {
   columns_.insert(columns_.begin(), {residual - residual_before_, result - result_before_, 0});
@@ -178,43 +192,39 @@ Vector Acceleration::row_scaling() const
 {
   Vector scale = Vector::Ones(n_);
   if (sizes_.size() < 2) return scale;
-  for (std::size_t p = 0, at = 0; p < sizes_.size(); at += static_cast<std::size_t>(sizes_[p++]))
-    if (field_sums_[p] > 0.0) scale.segment(static_cast<Eigen::Index>(at), sizes_[p]).setConstant(1.0 / field_sums_[p]);
+  for_each_field([&](std::size_t p, Eigen::Index at, Eigen::Index n) {
+    if (field_sums_[p] > 0.0) scale.segment(at, n).setConstant(1.0 / field_sums_[p]);
+  });
   return scale;
 }
 
-Vector Acceleration::least_squares_step(const Vector& residual, const Vector& result)
+Acceleration::Combination Acceleration::fit_columns(const Vector& residual) const
 {
   const Vector scale = row_scaling();
   std::vector<Vector> scaled;
   for (const auto& column : columns_) scaled.push_back(column.v.cwiseProduct(scale));
-  const auto qr = filtered_qr(scaled, options_.filter);
-  std::vector<Column> kept;
-  for (const auto j : qr.kept) kept.push_back(std::move(columns_[j]));
-  columns_ = std::move(kept);
-  if (columns_.empty()) return result - residual + options_.first_relaxation * residual;
-  const Vector c = solve_upper(qr.r, -(qr.q.transpose() * residual.cwiseProduct(scale)));
+  auto qr = filtered_qr(scaled, options_.filter);
+  if (qr.kept.empty()) return {};
+  return {std::move(qr.kept), solve_upper(qr.r, -(qr.q.transpose() * residual.cwiseProduct(scale)))};
+}
+
+Vector Acceleration::least_squares_step(const Vector& residual, const Vector& result) const
+{
+  const auto [kept, c] = fit_columns(residual);
+  if (kept.empty()) return result - residual + options_.first_relaxation * residual;
   Vector next = result;
-  for (std::size_t j = 0; j < columns_.size(); ++j) next += c(static_cast<Eigen::Index>(j)) * columns_[j].w;
+  for (std::size_t j = 0; j < kept.size(); ++j) next += c(static_cast<Eigen::Index>(j)) * columns_[kept[j]].w;
   return next;
 }
 
-Vector Acceleration::jacobian_step(const Vector& residual, const Vector& result)
+Vector Acceleration::jacobian_step(const Vector& residual, const Vector& result) const
 {
   const Eigen::Map<const Matrix> before(jacobian_.now().data(), n_, n_);
-  if (columns_.empty() && is_fresh_) return result - residual + options_.first_relaxation * residual;
+  const auto [kept, c] = fit_columns(residual);
+  if (kept.empty() && is_fresh_) return result - residual + options_.first_relaxation * residual;
   Vector next = result - before * residual;
-  if (columns_.empty()) return next;
-  const Vector scale = row_scaling();
-  std::vector<Vector> scaled;
-  for (const auto& column : columns_) scaled.push_back(column.v.cwiseProduct(scale));
-  const auto qr = filtered_qr(scaled, options_.filter);
-  std::vector<Column> kept;
-  for (const auto j : qr.kept) kept.push_back(std::move(columns_[j]));
-  columns_ = std::move(kept);
-  const Vector c = solve_upper(qr.r, -(qr.q.transpose() * residual.cwiseProduct(scale)));
-  for (std::size_t j = 0; j < columns_.size(); ++j)
-    next += c(static_cast<Eigen::Index>(j)) * (columns_[j].w - before * columns_[j].v);
+  for (std::size_t j = 0; j < kept.size(); ++j)
+    next += c(static_cast<Eigen::Index>(j)) * (columns_[kept[j]].w - before * columns_[kept[j]].v);
   return next;
 }
 
@@ -227,14 +237,10 @@ void Acceleration::load_columns()
     const int age = static_cast<int>(ages.data()[j]);
     if (age == 0) break;
     Column column{Vector(n_), Vector(n_), age};
-    Eigen::Index at = 0;
-    for (std::size_t p = 0; p < sizes_.size(); at += sizes_[p++]) {
-      const auto copy = [&](const DriverField& from, Vector& to) {
-        to.segment(at, sizes_[p]) = Eigen::Map<const Vector>(from.committed().data() + j * sizes_[p], sizes_[p]);
-      };
-      copy(v_state_[p], column.v);
-      copy(w_state_[p], column.w);
-    }
+    for_each_field([&](std::size_t p, Eigen::Index at, Eigen::Index n) {
+      column.v.segment(at, n) = Eigen::Map<const Vector>(v_state_[p].committed().data() + j * n, n);
+      column.w.segment(at, n) = Eigen::Map<const Vector>(w_state_[p].committed().data() + j * n, n);
+    });
     columns_.push_back(std::move(column));
   }
 }
@@ -246,11 +252,10 @@ void Acceleration::store_columns()
   for (const auto& column : columns_) {
     if (column.age + 1 > options_.reuse || j >= options_.max_columns) continue;
     ages_.now().data()[j] = column.age + 1;
-    Eigen::Index at = 0;
-    for (std::size_t p = 0; p < sizes_.size(); at += sizes_[p++]) {
-      Eigen::Map<Vector>(v_state_[p].now().data() + j * sizes_[p], sizes_[p]) = column.v.segment(at, sizes_[p]);
-      Eigen::Map<Vector>(w_state_[p].now().data() + j * sizes_[p], sizes_[p]) = column.w.segment(at, sizes_[p]);
-    }
+    for_each_field([&](std::size_t p, Eigen::Index at, Eigen::Index n) {
+      Eigen::Map<Vector>(v_state_[p].now().data() + j * n, n) = column.v.segment(at, n);
+      Eigen::Map<Vector>(w_state_[p].now().data() + j * n, n) = column.w.segment(at, n);
+    });
     ++j;
   }
 }

@@ -28,7 +28,7 @@ struct LedgerSide {
 
 struct Ledger {
   LedgerSide fluid, structure;
-  FieldAddress state{};       ///< in driver/state
+  FieldAddress state{};           ///< in driver/state
   std::uint32_t n_components = 0; ///< of the impulses; 0: not counted
 };
 

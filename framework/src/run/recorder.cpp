@@ -120,13 +120,86 @@ void Recorder::choose_columns()
       }
     }
   }
+  choose_driver_columns();
   row_.resize(columns_.size());
+}
+
+void Recorder::choose_driver_columns()
+{
+  // The ledger, and the numbers that the scheme reports.
+  for (const auto& state : session_->wiring().states)
+    if (state.is_reported)
+      columns_.push_back({"driver." + state.name, session_->find_state(state.name), 0, Statistic::value});
+  if (!session_->ledger()) return;
+  const auto& ledger = *session_->ledger();
+  Eigen::Index entity = 0;
+  for (const auto& column : ledger_columns(ledger))
+    columns_.push_back({column.name, ledger.state, 0, Statistic::value, entity++});
+
+  const auto& wet = session_->windows().view(ledger.structure.window);
+  const auto number = [](int field) { return static_cast<std::uint32_t>(field); };
+  if (const int f = wet.find_field(0, "velocity"); f >= 0) wet_velocity_ = {ledger.structure.window, number(f)};
+  for (std::uint32_t w = 0; w < control_.n_windows && !structure_energy_; ++w) {
+    const auto& record = control_.windows[w];
+    if (record.owner != shm::Owner::module || record.module != control_.windows[ledger.structure.window].module)
+      continue;
+    const auto& view = session_->windows().view(w);
+    const int f = view.find_field(0, "energy");
+    if (f >= 0 && view.fields()[f].location == MULLION_PANE) structure_energy_ = {w, number(f)};
+  }
+}
+
+void Recorder::watch_interface(const TimeStep& step)
+{
+  if (!session_->ledger() || !wet_velocity_) return;
+  const auto ledger = session_->read(session_->ledger()->state, 1);
+  const auto velocity = session_->read(*wet_velocity_, 1);
+  InterfaceSeries::Sample sample;
+  sample.time = step.end;
+  for (Eigen::Index c = 0; c < std::min<Eigen::Index>(velocity.rows(), InterfaceSeries::n_velocities); ++c) {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < velocity.cols(); ++i) sum += velocity(c, i);
+    sample.velocity[c] = sum / static_cast<double>(velocity.cols());
+  }
+  sample.defect = ledger(0, 2);
+  if (structure_energy_) sample.structure_energy = session_->read(*structure_energy_, 1)(0, 0);
+  interface_.add(sample);
+  if (step.index > 0) work_structure_ += ledger(0, 1);
+  energy_scale_ = std::max(energy_scale_, sample.structure_energy + std::abs(work_structure_));
+
+  // Looked at seldom enough to cost nothing: after 2000, 4000, 8000, … steps.
+  const bool is_due =
+      step.index >= 2000 && step.index % 2000 == 0 && ((step.index / 2000) & (step.index / 2000 - 1)) == 0;
+  if (!is_due || has_warned_) return;
+  if (const auto made = find_manufactured_energy(interface_)) {
+    log::warning(
+        "run",
+        "step {}: the scheme manufactures energy at the interface: the oscillation at {:.6g} Hz grows at {:.3g} "
+        "1/s, and the work defect alone explains {:.3g} 1/s; less lag or a smaller step helps",
+        step.index, made->frequency, made->growth, made->explained);
+    has_warned_ = true;
+  }
+}
+
+void Recorder::summarise_interface()
+{
+  if (session_ == nullptr || !session_->ledger() || !wet_velocity_ || interface_.samples().size() < 2) return;
+  InterfaceSummary summary;
+  summary.work_structure = work_structure_;
+  summary.defect = interface_.samples().back().defect;
+  summary.scale = energy_scale_;
+  summary.motion = fit_motion(interface_.samples());
+  summary.made = find_manufactured_energy(interface_);
+  if (const auto lag = session_->wiring().net_lag) summary.lag = *lag * case_.dt;
+  const auto structure = case_.interfaces[0].structure;
+  summary.vacuum_frequency = session_->ask(structure.substr(0, structure.find('.')), "vacuum_frequency", case_.dt);
+  interface_summary_ = summary;
 }
 
 double Recorder::measure(const Column& column) const
 {
   const auto values = session_->read(column.at, 1);
-  if (column.statistic == Statistic::value) return values(column.component, 0);
+  if (column.statistic == Statistic::value) return values(column.component, column.entity);
   double sum = 0.0, largest = 0.0; // in the order of the entities: the same bits wherever this runs
   for (Eigen::Index i = 0; i < values.cols(); ++i) {
     sum += values(column.component, i);
@@ -138,6 +211,7 @@ double Recorder::measure(const Column& column) const
 void Recorder::record(const TimeStep& step)
 {
   const bool is_output = results_ != nullptr && step.index % case_.output_every == 0;
+  watch_interface(step);
   if (history_ == nullptr && series_.empty() && !is_output) return;
   const auto begin = Clock::now();
   if (history_ != nullptr) {

@@ -4,6 +4,7 @@
 #include "io/history_writer.hpp"
 #include "io/results_writer.hpp"
 #include "io/run_record.hpp"
+#include "run/interface_report.hpp"
 #include "run/session.hpp"
 #include "run/timings.hpp"
 
@@ -37,6 +38,18 @@ public:
   [[nodiscard]] const io::Attempt& attempt() const { return record_.attempts.back(); }
   [[nodiscard]] const std::vector<Series>& series() const { return series_; }
 
+  /// What the summary says about the interface; nothing without a ledger.
+  struct InterfaceSummary {
+    double work_structure = 0.0, defect = 0.0, scale = 0.0; ///< [J] so far; scale: largest energy that was at play
+    InterfaceMotion motion;
+    std::optional<double> lag;              ///< net, of the scheme [s]
+    std::optional<double> vacuum_frequency; ///< [Hz]
+    std::optional<ManufacturedEnergy> made;
+  };
+  [[nodiscard]] const std::optional<InterfaceSummary>& interface_summary() const { return interface_summary_; }
+  /// While the modules still answer: the interface's part of the summary.
+  void summarise_interface();
+
 private:
   enum class Statistic { value, mean, largest };
   struct Column {
@@ -44,9 +57,12 @@ private:
     FieldAddress at;
     int component;
     Statistic statistic;
+    Eigen::Index entity = 0; ///< of a value
   };
 
   void choose_columns();
+  void choose_driver_columns();
+  void watch_interface(const TimeStep& step);
   [[nodiscard]] double measure(const Column& column) const;
   [[nodiscard]] std::vector<io::WindowData> snapshot() const;
   void collect_timings();
@@ -60,6 +76,11 @@ private:
   std::vector<double> row_;
   std::vector<Series> series_;
   std::vector<std::size_t> series_columns_;
+  InterfaceSeries interface_;
+  std::optional<FieldAddress> wet_velocity_, structure_energy_;
+  double work_structure_ = 0.0, energy_scale_ = 0.0; ///< [J] so far
+  bool has_warned_ = false;
+  std::optional<InterfaceSummary> interface_summary_;
   std::unique_ptr<io::HistoryWriter> history_;
   std::unique_ptr<io::ResultsWriter> results_;
   Clock::time_point begun_;

@@ -216,6 +216,23 @@ void Session::run_driver(const TimeStep& step)
   if (state_window_ != shm::no_window) mark_written(state_window_, {step.end, step.index, 0, MULLION_INSTANT});
 }
 
+void Session::check_limits(const TimeStep& step)
+{
+  if (case_.displacement_limit <= 0.0) return;
+  const auto& port = case_.interfaces[0].structure;
+  const auto& view = windows_.view(find_field(port + ".displacement", false, 0).window);
+  for (std::uint32_t pane = 0; pane < view.header().n_panes; ++pane) {
+    const auto values = read(find_field(port + ".displacement", false, pane), 0);
+    Eigen::Index component = 0, node = 0;
+    const double largest = values.cwiseAbs().maxCoeff(&component, &node);
+    MULLION_REQUIRE(
+        largest <= case_.displacement_limit, Errc::numeric,
+        "the run diverges: in step {}, t = {} s, {}.displacement[{}, {}] = {} m (component, node) is beyond "
+        "coupling.displacement_limit = {} m",
+        step.index, step.end, port, component, node, values(component, node), case_.displacement_limit);
+  }
+}
+
 void Session::mark_written(std::uint32_t window, const mullion_stamp& stamp)
 {
   control_.working[window] = {stamp, 1, 0};

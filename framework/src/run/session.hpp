@@ -45,6 +45,8 @@ public:
   /// Begin a coupling step from the last commit: forget what was written, arm driver/state.
   void begin_attempt();
   void run_driver(const TimeStep& step);
+  /// Has the interface moved further than the case allows? @throws Error Errc::numeric with the place
+  void check_limits(const TimeStep& step);
   /// All that was written becomes committed.
   void commit(const TimeStep& step);
   /// Fresh processes for all modules in hosts, a new driver object; state comes from the windows.

@@ -184,7 +184,7 @@ void Session::spawn(std::uint32_t m)
   windows_.allow(m);
   module.runtime = std::make_unique<module::ModuleRuntime>(
       windows_, m, [name = module.config->instance](std::uint32_t level, const std::string& text) {
-            log::write(log::level_of(level), name, text);
+        log::write(log::level_of(level), name, text);
       });
 }
 

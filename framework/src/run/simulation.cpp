@@ -53,7 +53,14 @@ std::string run_steps(const RunOptions& options, run::Session& session, process:
   run::Audit audit;
   const auto attempt_once = [&](const TimeStep& step) {
     session.begin_attempt();
-    session.run_driver(step);
+    try {
+      session.run_driver(step);
+      session.check_limits(step);
+    } catch (const Error& error) {
+      const auto& hint = session.wiring().divergence_hint;
+      if (error.code() != Errc::numeric || hint.empty()) throw;
+      throw Error(Errc::numeric, fmt::format("{} ({})", error.what(), hint));
+    }
   };
   const auto attempt = [&](const TimeStep& step) {
     try {
@@ -115,6 +122,7 @@ int orchestrate(const RunOptions& options, shm::Control& control, int control_fd
     log::info("run", "{}: {} steps of {} s, results in {}", c.name, plan.n_steps(), c.dt, out.string());
     const auto stopped_by = run_steps(options, session, supervisor, plan, recorder);
     log::show_progress("");
+    recorder.summarise_interface();
     session.shut_down();
     supervisor.unserve();
     recorder.finish(stopped_by.empty() ? "completed" : "stopped", stopped_by);

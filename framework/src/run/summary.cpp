@@ -23,6 +23,30 @@ std::string duration(double seconds)
                          : fmt::format("{:.2f} s", seconds);
 }
 
+/// What crossed the interface, what got lost, and what the scheme's lag does.
+std::string describe_interface(const Recorder::InterfaceSummary& i)
+{
+  std::string text =
+      fmt::format("interface     work on the structure {:.6g} J; defect {:+.3e} J", i.work_structure, i.defect);
+  if (i.scale > 0.0)
+    text += fmt::format(" ({:+.2e} of the energy at play: {})", i.defect / i.scale, i.defect < 0.0 ? "made" : "lost");
+  text += "\n";
+  if (i.motion.frequency > 0.0)
+    text += fmt::format("              oscillates at {:.6g} Hz, grows at {:+.3e} 1/s (fitted; residual {:.1e})\n",
+                        i.motion.frequency, i.motion.growth, i.motion.relative_residual);
+  if (!i.lag) text += "              net lag: no constant of this scheme, no estimate\n";
+  else if (i.vacuum_frequency && i.motion.frequency > 0.0)
+    text += fmt::format("              net lag {:.4g} s: it alone makes {:+.3e} 1/s (structure alone: {:.6g} Hz)\n",
+                        *i.lag, growth_from_lag(*i.lag, i.motion.frequency, *i.vacuum_frequency), *i.vacuum_frequency);
+  else text += fmt::format("              net lag {:.4g} s, no estimate of what it does\n", *i.lag);
+  if (i.made)
+    text +=
+        fmt::format("  warning: the scheme manufactures energy: growth {:+.3e} 1/s, explained by the defect {:+.3e} "
+                    "1/s\n",
+                    i.made->growth, i.made->explained);
+  return text;
+}
+
 } // namespace
 
 std::string summary(const Recorder& recorder, const std::string& stopped_by)
@@ -43,6 +67,7 @@ std::string summary(const Recorder& recorder, const std::string& stopped_by)
                              : fmt::format("  frequency  {} Hz\n", beside_expected(frequency, expected.frequency));
     text += fmt::format("  expected from: {}\n", expected.source);
   }
+  if (recorder.interface_summary()) text += describe_interface(*recorder.interface_summary());
   text += fmt::format("time          {:<28} {:>10} {:>10} {:>10} {:>7}\n", "", "calls", "work", "waiting", "share");
   for (const auto& timing : attempt.timings)
     text += fmt::format("  {:<12}{:<28} {:>10} {:>10} {:>10} {:>5.1f} %\n", timing.who, timing.call, timing.count,

@@ -131,7 +131,8 @@ double ElasticBar::vacuum_frequency(double step)
   const double k = std::numbers::pi / bar_.length * (bar_.far_end == FarEnd::clamped ? 0.5 : 1.0);
   const double omega = 2.0 * std::sqrt(bar_.youngs_modulus / bar_.density) / dx * std::sin(0.5 * k * dx);
   const double half = 0.5 * omega * dt; // what the integrator makes of it
-  return (options_.integrator == "newmark" ? std::atan(half) : std::asin(std::min(1.0, half))) / (std::numbers::pi * dt);
+  return (options_.integrator == "newmark" ? std::atan(half) : std::asin(std::min(1.0, half))) /
+         (std::numbers::pi * dt);
 }
 
 Motion ElasticBar::working_motion() const

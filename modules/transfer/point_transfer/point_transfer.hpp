@@ -26,8 +26,9 @@ public:
   static std::vector<InputSpec> inputs();
   static constexpr auto functions()
   {
-    return std::tuple{action("loads", &PointTransfer::loads, "structure_side", "traction, fluid to structure"),
-                      action("motion", &PointTransfer::motion, "fluid_side", "velocity and displacement, structure to fluid")};
+    return std::tuple{
+        action("loads", &PointTransfer::loads, "structure_side", "traction, fluid to structure"),
+        action("motion", &PointTransfer::motion, "fluid_side", "velocity and displacement, structure to fluid")};
   }
 
   void define(const TimeStep& initial) override;

@@ -54,8 +54,9 @@ struct Case {
   std::vector<ModuleCase> modules; ///< in the order fluid, structure, mesh_motion, transfer, then by name
   std::vector<InterfaceCase> interfaces;
   double reference_pressure = 0.0;
-  std::string scheme;      ///< the driver's plug-in
-  std::string scheme_path; ///< of the library
+  double displacement_limit = 0.0; ///< [m] of the wet surface; 0: none
+  std::string scheme;              ///< the driver's plug-in
+  std::string scheme_path;         ///< of the library
   std::vector<ParameterValue> driver_parameters;
   std::vector<ConnectionCase> connections;
   std::int64_t output_every = 0; ///< steps between result files; 0: none

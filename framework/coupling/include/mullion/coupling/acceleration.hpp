@@ -49,16 +49,28 @@ public:
   /// @param result  (n) H(x)
   [[nodiscard]] Eigen::VectorXd next(const Eigen::VectorXd& x, const Eigen::VectorXd& result);
   /// The step has converged: keep what the next steps use.
-  void end_step(const TimeStep& step);
+  /// @param x, result  of the last evaluation
+  void end_step(const TimeStep& step, const Eigen::VectorXd& x, const Eigen::VectorXd& result);
 
 private:
+  /// body(number, where its entries begin in x, how many)
+  template <class Body> void for_each_field(Body&& body) const;
   [[nodiscard]] bool is_quasi_newton() const { return options_.method == "iqn_ils" || options_.method == "iqn_mvj"; }
   [[nodiscard]] Eigen::VectorXd row_scaling() const;
+  void weigh_fields(const Eigen::VectorXd& residual);
   void load_columns();
   void store_columns();
   void add_columns(const Eigen::VectorXd& residual, const Eigen::VectorXd& result);
-  [[nodiscard]] Eigen::VectorXd least_squares_step(const Eigen::VectorXd& residual, const Eigen::VectorXd& result);
-  [[nodiscard]] Eigen::VectorXd jacobian_step(const Eigen::VectorXd& residual, const Eigen::VectorXd& result);
+  /// c = argmin |V c + r| over the columns that bring something new. Those left out stay for the next time: other
+  /// weights, other neighbours.
+  struct Combination {
+    std::vector<std::size_t> kept; ///< numbers of the columns
+    Eigen::VectorXd c;
+  };
+  [[nodiscard]] Combination fit_columns(const Eigen::VectorXd& residual) const;
+  [[nodiscard]] Eigen::VectorXd least_squares_step(const Eigen::VectorXd& residual,
+                                                   const Eigen::VectorXd& result) const;
+  [[nodiscard]] Eigen::VectorXd jacobian_step(const Eigen::VectorXd& residual, const Eigen::VectorXd& result) const;
 
   AccelerationOptions options_;
   std::vector<std::string> ports_;

@@ -23,7 +23,8 @@ struct Tolerance {
 class Convergence {
 public:
   Convergence() = default;
-  explicit Convergence(std::vector<Tolerance> tolerances) : fields_(tolerances.size()), tolerances_(std::move(tolerances))
+  explicit Convergence(std::vector<Tolerance> tolerances)
+      : fields_(tolerances.size()), tolerances_(std::move(tolerances))
   {
   }
 

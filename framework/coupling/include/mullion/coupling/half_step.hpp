@@ -1,5 +1,5 @@
-// The clock of a fluid that runs half a step behind the structure, for schemes that interleave the two like a leap-frog:
-// in the coupling step from t^n to t^{n+1} the fluid advances over a window around t^n,
+// The clock of a fluid that runs half a step behind the structure, for schemes that interleave the two like a
+// leap-frog: in the coupling step from t^n to t^{n+1} the fluid advances over a window around t^n,
 //
 //     [t^n - dt_{n-1}/2, t^n + dt_n/2]
 //

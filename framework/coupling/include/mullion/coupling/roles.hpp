@@ -55,7 +55,7 @@ struct FsiOptions {
 
 /// What a scheme wants of the shared connections beyond the options.
 struct FsiWiring {
-  bool corrects_on_fluid = false;        ///< stored, not bound: the traction to transfer, the wall velocity
+  bool corrects_on_fluid = false;         ///< stored, not bound: the traction to transfer, the wall velocity
   bool sends_evaluation_velocity = false; ///< the wall velocity that goes with the exported pressure
 };
 
@@ -101,13 +101,13 @@ inline FsiNames wire_fsi(Wiring& wiring, const FsiOptions& options, FsiWiring ex
 struct FsiRoles {
   ModuleProxy fluid, structure, mesh_motion;
   Action transfer_loads, transfer_motion;
-  ModuleField structure_motion;  ///< the structure's own velocity [m/s] (or displacement [m]) on its wet nodes
-  ModuleField load_on_structure; ///< traction, transferred to the structure's side [Pa]
-  ModuleField motion_on_fluid;   ///< motion, transferred to the fluid's side
-  ModuleField fluid_traction;    ///< as the fluid exports it [Pa]
-  ReceivedField structure_load;  ///< what the structure receives [Pa]
-  ReceivedField sent_motion;     ///< what goes into the transfer, on the structure's nodes
-  ReceivedField evaluation_velocity;           ///< if sends_evaluation_velocity
+  ModuleField structure_motion;      ///< the structure's own velocity [m/s] (or displacement [m]) on its wet nodes
+  ModuleField load_on_structure;     ///< traction, transferred to the structure's side [Pa]
+  ModuleField motion_on_fluid;       ///< motion, transferred to the fluid's side
+  ModuleField fluid_traction;        ///< as the fluid exports it [Pa]
+  ReceivedField structure_load;      ///< what the structure receives [Pa]
+  ReceivedField sent_motion;         ///< what goes into the transfer, on the structure's nodes
+  ReceivedField evaluation_velocity; ///< if sends_evaluation_velocity
   ReceivedField wall_velocity, wall_traction; ///< if corrects_on_fluid: to the mesh motion, into the transfer
   FsiWiring wiring;
   bool has_mesh_motion = false;
@@ -120,8 +120,7 @@ struct FsiRoles {
         structure_motion(coupling.field(names.wet + "." + names.motion)),
         load_on_structure(coupling.field(names.transfer + ".structure_side.traction")),
         motion_on_fluid(coupling.field(names.transfer + ".fluid_side." + names.motion)),
-        fluid_traction(coupling.field(names.traction)),
-        structure_load(coupling.received(names.wet + ".traction")),
+        fluid_traction(coupling.field(names.traction)), structure_load(coupling.received(names.wet + ".traction")),
         sent_motion(coupling.received(names.transfer + ".structure_side." + names.motion)), wiring(names.wiring),
         has_mesh_motion(!names.mesh_motion.empty())
   {
