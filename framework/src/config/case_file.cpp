@@ -45,11 +45,14 @@ struct RunOptions {
 struct OutputOptions {
   std::int64_t every = 0;
   bool history = true;
+  std::int64_t history_every = 1;
   static constexpr auto table()
   {
     return std::tuple{
         parameter("every", &OutputOptions::every, "1", "steps between two result files, 0: none", at_least(0.0)),
-        parameter("history", &OutputOptions::history, "", "write history.csv")};
+        parameter("history", &OutputOptions::history, "", "write history.csv"),
+        parameter("history_every", &OutputOptions::history_every, "1", "steps from one row of history.csv to the next",
+                  at_least(1))};
   }
 };
 
@@ -171,6 +174,7 @@ void read_output(CaseReader& reader)
   const auto output = read_options<OutputOptions>(*node, "[output]", reader.diagnostics, given);
   reader.value.output_every = output.every;
   reader.value.has_history = output.history;
+  reader.value.history_every = output.history_every;
 }
 
 void read_expectations(CaseReader& reader)

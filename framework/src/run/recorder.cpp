@@ -212,9 +212,10 @@ void Recorder::record(const TimeStep& step)
 {
   const bool is_output = results_ != nullptr && step.index % case_.output_every == 0;
   watch_interface(step);
-  if (history_ == nullptr && series_.empty() && !is_output) return;
+  const bool is_row = history_ != nullptr && step.index % case_.history_every == 0;
+  if (!is_row && series_.empty() && !is_output) return;
   const auto begin = Clock::now();
-  if (history_ != nullptr) {
+  if (is_row) {
     for (std::size_t c = 0; c < columns_.size(); ++c) row_[c] = measure(columns_[c]);
     history_->row(step.index, step.end, row_);
   }

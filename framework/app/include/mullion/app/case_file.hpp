@@ -61,6 +61,7 @@ struct Case {
   std::vector<ConnectionCase> connections;
   std::int64_t output_every = 0; ///< steps between result files; 0: none
   bool has_history = true;
+  std::int64_t history_every = 1; ///< steps between its rows
   std::vector<Expectation> expectations;
   std::string text; ///< the case as it is run, overrides included: what case.toml will say
 };
