@@ -4,10 +4,10 @@
 // beyond the fields. Rounds are interleaved; medians of rounds and of their ratios.
 //
 //   build-dev/bench/coupled_step [--rounds R] [--largest N]
+#include "mullion_run.hpp"
 #include "shm/memory_object.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -25,13 +25,8 @@
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using mullion::bench::median;
 namespace fs = std::filesystem;
-
-double median(std::vector<double> values)
-{
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 void echo(const double* in, double* out, std::size_t n)
 {
@@ -96,41 +91,15 @@ struct Run {
 };
 
 /// Run a case file for this many steps; what run.json says a step took.
-Run mullion_step(const std::string& case_file, const std::vector<std::string>& sets, long steps, bool with_memory)
+Run mullion_step(const std::string& case_file, std::vector<std::string> sets, long steps, bool with_memory,
+                 const std::string& plugin_path = MULLION_BUILD_DIR "/bench/plugins")
 {
-  const auto out = fs::temp_directory_path() / fmt::format("mullion-bench-{}", ::getpid());
-  std::vector<std::string> words{
-      MULLION_BUILD_DIR "/bin/mullion",       "run", case_file, "--out", out.string(), "--log-level", "error", "--set",
-      fmt::format("run.end_time={}.0", steps)};
-  for (const auto& set : sets) {
-    words.emplace_back("--set");
-    words.push_back(set);
-  }
-  std::fflush(stdout);
-  const pid_t pid = ::fork();
-  if (pid == 0) {
-    ::setenv("MULLION_PLUGIN_PATH", MULLION_BUILD_DIR "/bench/plugins", 1);
-    (void)!std::freopen("/dev/null", "w", stdout);
-    std::vector<char*> arguments;
-    for (auto& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    ::execv(arguments[0], arguments.data());
-    ::_exit(127);
-  }
+  sets.insert(sets.begin(), fmt::format("run.end_time={}.0", steps));
   Run run;
-  int status = 0;
-  while (::waitpid(pid, &status, with_memory ? WNOHANG : 0) == 0) {
-    run.pss = std::max(run.pss, pss_of_tree(pid));
-    ::usleep(20000);
-  }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    fmt::print(stderr, "mullion run failed\n");
-    std::exit(1);
-  }
-  const auto record = nlohmann::json::parse(std::ifstream(out / "run.json"));
-  const auto& attempt = record.at("attempts").back();
+  const std::function<void(pid_t)> watch = [&](pid_t pid) { run.pss = std::max(run.pss, pss_of_tree(pid)); };
+  const auto attempt =
+      mullion::bench::mullion_run(case_file, sets, plugin_path, with_memory ? watch : std::function<void(pid_t)>{});
   run.step_s = attempt.at("wall_s").get<double>() / static_cast<double>(steps);
-  fs::remove_all(out);
   return run;
 }
 
@@ -196,7 +165,7 @@ int main(int argc, char** argv)
     five.push_back(
         mullion_step(MULLION_SOURCE_DIR "/configs/closed_piston.toml",
                      {"run.dt=6e-6", "run.end_time=0.06", "output.every=0", "output.history=false", "expect=[]"}, 10000,
-                     false)
+                     false, "")
             .step_s);
   fmt::print("\nclosed piston, five processes on {} cores, five calls a step: {:.1f} us a step\n",
              ::sysconf(_SC_NPROCESSORS_ONLN), 1e6 * median(five));
