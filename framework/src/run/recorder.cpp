@@ -121,6 +121,17 @@ void Recorder::choose_columns()
     }
   }
   row_.resize(columns_.size());
+  for (const auto& column : columns_) record_.columns.emplace_back(column.name, unit_of(column));
+  io::write_run_record(out_ / "run.json", record_); // with units, for who looks while the run goes on, or after a crash
+}
+
+std::string Recorder::unit_of(const Column& column) const
+{
+  // What is no field of a window is known by its name.
+  if (column.name.starts_with("ledger.work_")) return "J";
+  if (column.name.starts_with("ledger.impulse_")) return "N s";
+  if (column.name.starts_with("driver.")) return "1";
+  return session_->windows().view(column.at.window).fields()[column.at.field].unit;
 }
 
 double Recorder::measure(const Column& column) const

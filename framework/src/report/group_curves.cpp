@@ -1,0 +1,107 @@
+#include "report/group_curves.hpp"
+
+#include "report/plot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace mullion::report {
+namespace {
+
+// A curve whose whole range is less than this part of the axis looks like a straight line.
+constexpr double smallest_part = 0.05;
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+
+  [[nodiscard]] double span() const { return high > low ? high - low : 0.0; }
+};
+
+Range range_of(const CsvColumn& column)
+{
+  Range range;
+  for (const double value : column.numbers) {
+    if (!std::isfinite(value)) continue;
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+  }
+  return range;
+}
+
+Range joined(const Range& a, const Range& b) { return {std::min(a.low, b.low), std::max(a.high, b.high)}; }
+
+/// A group while it grows, with what its members need to be seen.
+struct Growing {
+  CurveGroup group;
+  std::string key;
+  Range range;
+  double smallest_span = std::numeric_limits<double>::infinity(); ///< of the members that vary
+};
+
+bool fits(const Growing& plot, const Range& range, double span)
+{
+  if (plot.group.columns.size() >= max_curves) return false;
+  // Residuals stand on a logarithmic axis, where orders of magnitude go together; energies as changes since the start.
+  if (plot.group.section == Section::residuals || plot.group.section == Section::energies) return true;
+  return std::min(plot.smallest_span, span) >= smallest_part * joined(plot.range, range).span();
+}
+
+} // namespace
+
+Section section_of(const std::string& column, const std::string& unit)
+{
+  if (column.starts_with("ledger.")) return Section::ledger;
+  if (column.ends_with(".residual")) return Section::residuals;
+  if (column.starts_with("driver.")) return Section::driver;
+  if (unit == "J") return Section::energies;
+  return Section::interface;
+}
+
+std::string quantity_of(const std::string& column)
+{
+  auto name = column;
+  for (const std::string statistic : {".mean", ".max"})
+    if (name.ends_with(statistic)) name.resize(name.size() - statistic.size());
+  if (const auto dot = name.rfind('.'); dot != std::string::npos) name.erase(0, dot + 1);
+  if (const auto pane = name.find('['); pane != std::string::npos) name.erase(pane, name.find(']') + 1 - pane);
+  const auto size = name.size();
+  const bool is_component =
+      size > 2 && name[size - 2] == '_' && std::string("xyz0123456789").find(name[size - 1]) != std::string::npos;
+  if (is_component) name.resize(size - 2);
+  return name;
+}
+
+std::vector<CurveGroup> group_curves(const CsvTable& history, const std::map<std::string, std::string>& units)
+{
+  std::vector<Growing> plots;
+  for (const auto& column : history.columns) {
+    if (column.is_text() || column.name == "step" || column.name == "time") continue;
+    const auto known = units.find(column.name);
+    const auto unit = known == units.end() ? std::string() : known->second;
+    const auto section = section_of(column.name, unit);
+    const auto key = unit.empty() ? "of " + quantity_of(column.name) : unit;
+    const auto range = range_of(column);
+    const double span = range.span() > 0.0 ? range.span() : std::numeric_limits<double>::infinity();
+    auto at = std::find_if(plots.begin(), plots.end(), [&](const Growing& plot) {
+      return plot.group.section == section && plot.key == key && fits(plot, range, span);
+    });
+    if (at == plots.end()) {
+      auto& plot = plots.emplace_back();
+      plot.group.section = section;
+      plot.group.unit = unit;
+      plot.key = key;
+      at = plots.end() - 1;
+    }
+    at->group.columns.push_back(&column);
+    at->range = joined(at->range, range);
+    at->smallest_span = std::min(at->smallest_span, span);
+  }
+  std::stable_sort(plots.begin(), plots.end(),
+                   [](const Growing& a, const Growing& b) { return a.group.section < b.group.section; });
+  std::vector<CurveGroup> groups;
+  for (auto& plot : plots) groups.push_back(std::move(plot.group));
+  return groups;
+}
+
+} // namespace mullion::report

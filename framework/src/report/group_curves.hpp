@@ -1,0 +1,35 @@
+// Which columns of a history go into which plot: those of one section and unit together, as long as each of them can be
+// seen: a column that would be a flat line beside another one gets a plot of its own.
+#pragma once
+
+#include "report/csv_table.hpp"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace mullion::report {
+
+/// Where in the report a column of history.csv belongs.
+enum class Section { interface, energies, ledger, driver, residuals };
+
+/// By the column's name and unit: "ledger.*", "driver.*", "*.residual", unit J; else the interface.
+[[nodiscard]] Section section_of(const std::string& column, const std::string& unit);
+
+/// Columns of one plot.
+struct CurveGroup {
+  Section section = Section::interface;
+  std::string unit;                      ///< "" if it is not known
+  std::vector<const CsvColumn*> columns; ///< of numbers
+};
+
+/// All columns of numbers but `step` and `time`, by section, in the order of their first columns.
+///
+/// @param units  of columns, SI; those that are missing are taken as of one unknown unit a field name
+[[nodiscard]] std::vector<CurveGroup> group_curves(const CsvTable& history,
+                                                   const std::map<std::string, std::string>& units);
+
+/// The field or quantity that a column belongs to: "velocity" of "structure.wet.velocity_x.max".
+[[nodiscard]] std::string quantity_of(const std::string& column);
+
+} // namespace mullion::report
