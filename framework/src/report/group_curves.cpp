@@ -3,8 +3,11 @@
 #include "report/plot.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 namespace mullion::report {
 namespace {
@@ -18,13 +21,15 @@ struct Range {
   [[nodiscard]] double span() const { return high > low ? high - low : 0.0; }
 };
 
-Range range_of(const CsvColumn& column)
+/// What of the axis a column takes; energies are drawn as changes since the start.
+Range range_of(const CsvColumn& column, Section section)
 {
+  const double offset = section == Section::energies && !column.numbers.empty() ? column.numbers.front() : 0.0;
   Range range;
   for (const double value : column.numbers) {
-    if (!std::isfinite(value)) continue;
-    range.low = std::min(range.low, value);
-    range.high = std::max(range.high, value);
+    if (!std::isfinite(value - offset)) continue;
+    range.low = std::min(range.low, value - offset);
+    range.high = std::max(range.high, value - offset);
   }
   return range;
 }
@@ -42,21 +47,47 @@ struct Growing {
 bool fits(const Growing& plot, const Range& range, double span)
 {
   if (plot.group.columns.size() >= max_curves) return false;
-  // Residuals stand on a logarithmic axis, where orders of magnitude go together; energies as changes since the start.
-  if (plot.group.section == Section::residuals || plot.group.section == Section::energies) return true;
+  if (plot.group.section == Section::residuals) return true; // on a logarithmic axis orders of magnitude go together
   return std::min(plot.smallest_span, span) >= smallest_part * joined(plot.range, range).span();
 }
 
-} // namespace
+/// What interfaces exchange, in the order of the report.
+constexpr std::array exchanged = {"displacement", "velocity", "traction", "load"};
 
-Section section_of(const std::string& column, const std::string& unit)
+/// "structure.wet." of "structure.wet.velocity".
+std::string window_of(const std::string& column) { return column.substr(0, column.rfind(quantity_of(column))); }
+
+std::set<std::string> interface_windows(const CsvTable& history)
+{
+  std::set<std::string> windows;
+  for (const auto& column : history.columns)
+    if (std::find(exchanged.begin(), exchanged.end(), quantity_of(column.name)) != exchanged.end())
+      windows.insert(window_of(column.name));
+  return windows;
+}
+
+Section section_of(const std::string& column, const std::string& unit, const std::set<std::string>& interfaces)
 {
   if (column.starts_with("ledger.")) return Section::ledger;
   if (column.ends_with(".residual")) return Section::residuals;
   if (column.starts_with("driver.")) return Section::driver;
   if (unit == "J") return Section::energies;
-  return Section::interface;
+  return interfaces.contains(window_of(column)) ? Section::interface : Section::outputs;
 }
+
+/// Where in its section a plot stands: that of the first quantity it has.
+std::size_t rank(const CurveGroup& group)
+{
+  std::size_t first = exchanged.size();
+  if (group.section != Section::interface) return first;
+  for (const auto* column : group.columns) {
+    const auto at = std::find(exchanged.begin(), exchanged.end(), quantity_of(column->name));
+    first = std::min(first, static_cast<std::size_t>(at - exchanged.begin()));
+  }
+  return first;
+}
+
+} // namespace
 
 std::string quantity_of(const std::string& column)
 {
@@ -74,14 +105,15 @@ std::string quantity_of(const std::string& column)
 
 std::vector<CurveGroup> group_curves(const CsvTable& history, const std::map<std::string, std::string>& units)
 {
+  const auto interfaces = interface_windows(history);
   std::vector<Growing> plots;
   for (const auto& column : history.columns) {
     if (column.is_text() || column.name == "step" || column.name == "time") continue;
     const auto known = units.find(column.name);
     const auto unit = known == units.end() ? std::string() : known->second;
-    const auto section = section_of(column.name, unit);
+    const auto section = section_of(column.name, unit, interfaces);
     const auto key = unit.empty() ? "of " + quantity_of(column.name) : unit;
-    const auto range = range_of(column);
+    const auto range = range_of(column, section);
     const double span = range.span() > 0.0 ? range.span() : std::numeric_limits<double>::infinity();
     auto at = std::find_if(plots.begin(), plots.end(), [&](const Growing& plot) {
       return plot.group.section == section && plot.key == key && fits(plot, range, span);
@@ -97,8 +129,9 @@ std::vector<CurveGroup> group_curves(const CsvTable& history, const std::map<std
     at->range = joined(at->range, range);
     at->smallest_span = std::min(at->smallest_span, span);
   }
-  std::stable_sort(plots.begin(), plots.end(),
-                   [](const Growing& a, const Growing& b) { return a.group.section < b.group.section; });
+  std::stable_sort(plots.begin(), plots.end(), [](const Growing& a, const Growing& b) {
+    return std::pair(a.group.section, rank(a.group)) < std::pair(b.group.section, rank(b.group));
+  });
   std::vector<CurveGroup> groups;
   for (auto& plot : plots) groups.push_back(std::move(plot.group));
   return groups;

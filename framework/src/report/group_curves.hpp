@@ -11,10 +11,7 @@
 namespace mullion::report {
 
 /// Where in the report a column of history.csv belongs.
-enum class Section { interface, energies, ledger, driver, residuals };
-
-/// By the column's name and unit: "ledger.*", "driver.*", "*.residual", unit J; else the interface.
-[[nodiscard]] Section section_of(const std::string& column, const std::string& unit);
+enum class Section { interface, outputs, energies, ledger, driver, residuals };
 
 /// Columns of one plot.
 struct CurveGroup {
@@ -23,7 +20,9 @@ struct CurveGroup {
   std::vector<const CsvColumn*> columns; ///< of numbers
 };
 
-/// All columns of numbers but `step` and `time`, by section, in the order of their first columns.
+/// All columns of numbers but `step` and `time`, by section: "ledger.*", "driver.*", "*.residual", unit J, the windows
+/// of the interface (those with a displacement, velocity, traction or load), other outputs. On the interface these
+/// quantities come first, for the rest the order is that of the columns.
 ///
 /// @param units  of columns, SI; those that are missing are taken as of one unknown unit a field name
 [[nodiscard]] std::vector<CurveGroup> group_curves(const CsvTable& history,

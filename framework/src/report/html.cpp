@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
+#include <algorithm>
+#include <charconv>
 
 namespace mullion::report {
 namespace {
@@ -18,8 +19,8 @@ h2 { font-size: 1.25em; margin: 1.8em 0 .5em; border-bottom: 1px solid #ccc; }
 .error { border-left: 5px solid #D55E00; background: #fdf3ec; padding: .6em 1em; white-space: pre-wrap; overflow-wrap: anywhere; font-family: monospace; }
 .table { overflow-x: auto; }
 table { border-collapse: collapse; margin: .5em 0; }
-th, td { text-align: left; vertical-align: top; padding: .2em .9em .2em 0; border-bottom: 1px solid #e4e4e4; overflow-wrap: anywhere; }
-td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+th, td { text-align: left; vertical-align: top; padding: .2em .9em .2em 0; border-bottom: 1px solid #e4e4e4; overflow-wrap: break-word; }
+td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 tr.failed td { background: #fdf3ec; }
 figure { margin: 1.2em 0 1.8em; break-inside: avoid; }
 figure h3 { font-size: 1em; margin: 0 0 .3em; overflow-wrap: anywhere; }
@@ -36,11 +37,25 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
     text.replace(at, from.size(), to);
 }
 
+/// "12", or "51.3 ms": to be aligned at the right.
 bool is_number(const std::string& text)
 {
-  return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) != 0 ||
-                           ((text[0] == '-' || text[0] == '+') && text.size() > 1 &&
-                            std::isdigit(static_cast<unsigned char>(text[1])) != 0));
+  const auto* end = text.data() + std::min(text.find(' '), text.size());
+  double value = 0.0;
+  const auto parsed = std::from_chars(text.data(), end, value);
+  return parsed.ec == std::errc{} && parsed.ptr == end;
+}
+
+/// Whether each cell of the column is a number or empty, and not all are empty.
+bool is_number_column(const Table& table, std::size_t column)
+{
+  bool is_any = false;
+  for (const auto& row : table.rows) {
+    if (column >= row.size() || row[column].empty()) continue;
+    if (!is_number(row[column])) return false;
+    is_any = true;
+  }
+  return is_any;
 }
 
 } // namespace
@@ -64,16 +79,21 @@ std::string escape(const std::string& text)
 std::string table_html(const Table& table)
 {
   std::string html = "<div class=\"table\"><table>\n";
+  std::vector<std::string>
+      attributes; // of the columns; a table without a header is of names and values, all at the left
+  for (std::size_t c = 0; c < table.header.size(); ++c)
+    attributes.emplace_back(is_number_column(table, c) ? " class=\"number\"" : "");
   if (!table.header.empty()) {
     html += "<tr>";
-    for (const auto& cell : table.header) html += "<th>" + escape(cell) + "</th>";
+    for (std::size_t c = 0; c < table.header.size(); ++c)
+      html += fmt::format("<th{}>{}</th>", attributes[c], escape(table.header[c]));
     html += "</tr>\n";
   }
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     const bool is_marked = r < table.classes.size() && !table.classes[r].empty();
     html += is_marked ? fmt::format("<tr class=\"{}\">", escape(table.classes[r])) : "<tr>";
-    for (const auto& cell : table.rows[r])
-      html += fmt::format("<td{}>{}</td>", is_number(cell) ? " class=\"number\"" : "", escape(cell));
+    for (std::size_t c = 0; c < table.rows[r].size(); ++c)
+      html += fmt::format("<td{}>{}</td>", c < attributes.size() ? attributes[c] : "", escape(table.rows[r][c]));
     html += "</tr>\n";
   }
   return html + "</table></div>\n";

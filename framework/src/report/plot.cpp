@@ -15,6 +15,7 @@ constexpr std::array colours = {"#0072B2", "#D55E00", "#009E73", "#000000", "#CC
 // In units of the line's width, alternately drawn and left out. A second curve that hides the first would leave it
 // visible between the dashes.
 constexpr std::array dashes = {"solid", "(12,5)", "(4,3)", "(14,4,3,4)", "(22,6)", "(10,3,2,3,2,3)", "(2,4)"};
+constexpr const char* waiting_colour = "#E69F00"; // of the second bar: much lighter than the first, in grey too
 constexpr std::array full_points = {7, 5, 9, 13, 11, 15, 2};
 constexpr std::array hollow_points = {6, 4, 8, 12, 10, 14, 1};
 
@@ -32,50 +33,74 @@ std::vector<double> drawn_values(const Plot& plot, std::vector<double> Curve::*c
   return values;
 }
 
-/// Where the stacked bars begin and end.
-std::vector<double> bar_ends(const Plot& plot)
+/// Where the longest stack of bars ends.
+double longest_bar(const Plot& plot)
 {
-  std::vector<double> ends(plot.labels.size() + 1, 0.0); // the last: where all begin
+  std::vector<double> ends(plot.labels.size(), 0.0);
   for (const auto& curve : plot.curves)
     for (std::size_t i = 0; i < curve.x.size(); ++i)
       if (is_drawn(curve.x[i])) ends[static_cast<std::size_t>(curve.y[i])] += curve.x[i];
-  return ends;
+  return ends.empty() ? 0.0 : *std::max_element(ends.begin(), ends.end());
 }
 
 bool has_labels(const Plot& plot) { return plot.shape == Shape::dots || plot.shape == Shape::bars; }
 
+// How many characters find room.
+constexpr std::size_t legend_room = 95, x_room = 80, y_room = 44, label_room = 45;
+
+/// A text with its middle left out, if it has more characters: the ends, with the unit, tell more.
+std::string shorten(const std::string& text, std::size_t room)
+{
+  if (text.size() <= room) return text;
+  const auto is_within_character = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80; };
+  auto head = room / 2, tail = text.size() - (room - room / 2);
+  while (head > 0 && is_within_character(head)) --head;
+  while (tail < text.size() && is_within_character(tail)) ++tail;
+  return text.substr(0, head) + "…" + text.substr(tail);
+}
+
 std::size_t longest_title(const Plot& plot)
 {
   std::size_t longest = 1;
-  for (const auto& curve : plot.curves) longest = std::max(longest, curve.title.size());
+  for (const auto& curve : plot.curves) longest = std::max(longest, shorten(curve.title, legend_room).size());
   return longest;
 }
 
-/// Titles are 7 px a character, as in most fonts of that size, and 60 px for the sample of the line.
-std::size_t legend_columns(const Plot& plot)
+bool has_legend(const Plot& plot) { return plot.curves.size() > 1; }
+
+/// gnuplot gives a column of the legend about 8 px a character of its longest title and 90 px for the sample of the
+/// line.
+std::size_t legend_rows(const Plot& plot)
 {
-  const auto fitting = static_cast<std::size_t>(width - 60) / (7 * longest_title(plot) + 60);
-  return std::clamp<std::size_t>(fitting, 1, plot.curves.size());
+  const auto fitting = static_cast<std::size_t>(width - 20) / (8 * longest_title(plot) + 90);
+  const auto n_columns = std::clamp<std::size_t>(fitting, 1, plot.curves.size());
+  return (plot.curves.size() + n_columns - 1) / n_columns;
 }
 
-int height(const Plot& plot)
+/// What stands below the axis, and the whole [px].
+struct Heights {
+  int below, whole;
+};
+
+Heights heights(const Plot& plot)
 {
-  const auto n_curves = std::max<std::size_t>(1, plot.curves.size());
-  const auto legend_rows = n_curves < 2 ? 1 : (n_curves + legend_columns(plot) - 1) / legend_columns(plot);
-  const auto drawing = has_labels(plot) ? 30 * plot.labels.size() + 70 : 360;
-  return static_cast<int>(drawing + 20 * legend_rows + 40);
+  const auto below = 60 + (has_legend(plot) ? 21 * legend_rows(plot) : 0); // 60: numbers and title of the axis
+  const auto drawing = has_labels(plot) ? 36 * plot.labels.size() + 20 : 360;
+  return {static_cast<int>(below), static_cast<int>(below + drawing)};
 }
 
-std::string style_of(const Plot& plot, std::size_t c)
+std::string style_of(const Plot& plot, std::size_t place)
 {
+  const auto& curve = plot.curves[place];
+  const auto c = curve.style < 0 ? place : static_cast<std::size_t>(curve.style);
   const auto colour = colours[c % colours.size()];
   const auto dash = dashes[(c + c / colours.size()) % dashes.size()]; // another one when the colours come again
-  const auto point = (plot.curves[c].is_mark ? hollow_points : full_points)[c % full_points.size()];
+  const auto point = (curve.is_mark ? hollow_points : full_points)[c % full_points.size()];
   const auto marks = fmt::format("linecolor rgb '{}' pointtype {} pointsize 0.8", colour, point);
   if (plot.shape == Shape::bars)
-    return fmt::format("with boxxyerror linecolor rgb '{}' fillstyle {} border", colour,
-                       c == 0 ? "solid 0.9" : "pattern 4");
-  if (plot.shape == Shape::dots || plot.curves[c].is_mark) return "with points " + marks;
+    return fmt::format("with boxxyerror linecolor rgb '{}' fillstyle solid noborder",
+                       c == 0 ? colours[0] : waiting_colour);
+  if (plot.shape == Shape::dots || curve.is_mark) return "with points " + marks;
   return fmt::format("with {} linewidth 1.6 dashtype {} {}", plot.shape == Shape::marked ? "linespoints" : "lines",
                      dash, marks);
 }
@@ -159,38 +184,49 @@ std::string plot_data(const Plot& plot)
 std::string plot_script(const Plot& plot)
 {
   const auto file = [&](const char* ending) { return quote(plot.name + ending); };
-  auto x = plot.shape == Shape::bars ? bar_ends(plot) : drawn_values(plot, &Curve::x, plot.x.is_log);
+  const auto x = drawn_values(plot, &Curve::x, plot.x.is_log);
   const auto y = drawn_values(plot, &Curve::y, plot.y.is_log);
   const bool is_time = plot.shape == Shape::lines;
   std::string script = "reset\nset encoding utf8\nset datafile missing 'NaN'\n";
   script += "set grid linecolor rgb '#dddddd' linetype 1 linewidth 0.5\nset border 3\nset tics nomirror\n";
-  script += fmt::format("set xlabel {}\nset xrange {}\nset format x '{}'\n", quote(plot.x.label),
-                        axis_range(x, plot.x.is_log, is_time ? 0.0 : 0.05), axis_format(x));
+  script += fmt::format("set xlabel {}\n", quote(shorten(plot.x.label, x_room)));
+  if (plot.shape == Shape::bars) {
+    const double longest = longest_bar(plot);
+    script += fmt::format("set xrange [0:{}]\n", longest > 0.0 ? 1.05 * longest : 1.0);
+  } else {
+    script += fmt::format("set xrange {}\nset format x '{}'\n", axis_range(x, plot.x.is_log, is_time ? 0.0 : 0.05),
+                          axis_format(x));
+  }
   if (plot.x.is_log) script += "set logscale x\n";
   if (has_labels(plot)) {
     script += fmt::format("set yrange [{}:-0.6]\nset ytics (", static_cast<double>(plot.labels.size()) - 0.4);
     for (std::size_t i = 0; i < plot.labels.size(); ++i)
-      script += fmt::format("{}{} {}", i == 0 ? "" : ", ", quote(plot.labels[i]), i);
-    script += ")\n";
+      script += fmt::format("{}{} {}", i == 0 ? "" : ", ", quote(shorten(plot.labels[i], label_room)), i);
+    script += ") scale 0\n";
   } else {
     script += fmt::format("set yrange {}\nset format y '{}'\n", axis_range(y, plot.y.is_log, 0.06), axis_format(y));
     if (plot.y.is_log) script += "set logscale y\n";
   }
-  if (!plot.y.label.empty()) script += fmt::format("set ylabel {}\n", quote(plot.y.label));
-  script += "set rmargin 5\nset tmargin 1\n"; // room for half of a number at the ends of the axes
-  const bool is_named = plot.curves.size() > 1 || has_labels(plot);
-  if (is_named) script += fmt::format("set key below left Left reverse maxcols {}\n", legend_columns(plot));
+  if (!has_labels(plot)) script += fmt::format("set ylabel {}\n", quote(shorten(plot.y.label, y_room)));
+  const auto [below, whole] = heights(plot);
+  // Margins of our own: gnuplot's would let the legend run into the title of the axis. At the right there is room for
+  // half of a number.
+  script += fmt::format("set rmargin 5\nset tmargin 1\nset bmargin at screen {:.4f}\n",
+                        static_cast<double>(below) / static_cast<double>(whole));
+  if (has_legend(plot))
+    script += fmt::format("set key at screen 0.01, screen 0.01 left bottom vertical Left reverse maxrows {}\n",
+                          legend_rows(plot));
   else script += "unset key\n";
 
   std::string curves;
   for (std::size_t c = 0; c < plot.curves.size(); ++c)
-    curves +=
-        fmt::format("{}{} index {} using {} {} title {}", c == 0 ? "plot " : ", \\\n     ", file(".dat"), c,
-                    plot.shape == Shape::bars ? "1:2:3:4:5:6" : "1:2", style_of(plot, c), quote(plot.curves[c].title));
+    curves += fmt::format("{}{} index {} using {} {} title {}", c == 0 ? "plot " : ", \\\n     ", file(".dat"), c,
+                          plot.shape == Shape::bars ? "1:2:3:4:5:6" : "1:2", style_of(plot, c),
+                          quote(shorten(plot.curves[c].title, legend_room)));
   script += fmt::format("set terminal svg noenhanced size {},{} font 'sans-serif,13' rounded\nset output {}\n{}\n",
-                        width, height(plot), file(".svg"), curves);
+                        width, whole, file(".svg"), curves);
   script += fmt::format("set terminal pngcairo noenhanced size {},{} font 'sans,10' rounded\nset output {}\n{}\n",
-                        width, height(plot), file(".png"), curves);
+                        width, whole, file(".png"), curves);
   return script + "unset output\n";
 }
 

@@ -18,6 +18,7 @@ struct Curve {
   std::string title;
   std::vector<double> x, y; ///< as many; where one is not finite the curve is interrupted
   bool is_mark = false;     ///< points without a line between them, hollow
+  int style = -1;           ///< colour, dash and point by number; negative: by its place among the plot's curves
 };
 
 enum class Shape {
@@ -32,7 +33,7 @@ struct Plot {
   std::string title;   ///< above it on the page
   std::string caption; ///< below it on the page; may be empty
   Shape shape = Shape::lines;
-  Axis x, y;
+  Axis x, y; ///< y is not used where there are labels
   std::vector<Curve> curves;
   std::vector<std::string> labels; ///< of dots and bars
 };

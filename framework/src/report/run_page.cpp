@@ -88,6 +88,7 @@ const char* title_of(Section section)
 {
   switch (section) {
   case Section::interface: return "Interface";
+  case Section::outputs: return "Outputs";
   case Section::energies: return "Energies";
   case Section::ledger: return "Ledger";
   case Section::driver: return "Driver";
@@ -154,6 +155,8 @@ std::string caption(std::size_t n_rows, bool is_thinned, const Omitted& omitted)
   return text;
 }
 
+bool starts_elsewhere(const CsvColumn* column) { return column->numbers.front() != 0.0; } // than at zero
+
 Plot history_plot(const CurveGroup& group, const std::vector<double>& time)
 {
   Plot plot;
@@ -163,8 +166,8 @@ Plot history_plot(const CurveGroup& group, const std::vector<double>& time)
     const auto values = drawn_values(*column, group.section, omitted);
     auto& curve = plot.curves.emplace_back();
     curve.title = column->name;
-    const bool is_change = group.section == Section::energies && column->numbers.front() != 0.0;
-    if (is_change) curve.title += fmt::format(" (starts at {:.6g} {})", column->numbers.front(), group.unit);
+    if (group.section == Section::energies && starts_elsewhere(column))
+      curve.title += fmt::format(" (starts at {:.6g} {})", column->numbers.front(), group.unit);
     for (const auto i : decimate(time, values, n_buckets)) {
       curve.x.push_back(time[i]);
       curve.y.push_back(values[i]);
@@ -176,10 +179,12 @@ Plot history_plot(const CurveGroup& group, const std::vector<double>& time)
   const auto label = is_alone ? group.columns.front()->name : what;
   plot.name = file_name(std::string(title_of(group.section)) + "-" + what);
   plot.title = is_alone ? label : fmt::format("{}: {}", title_of(group.section), what);
-  if (group.section == Section::energies) plot.title += ", change since the start";
+  const bool is_change =
+      group.section == Section::energies && std::any_of(group.columns.begin(), group.columns.end(), starts_elsewhere);
+  if (is_change) plot.title += ", change since the start";
   plot.shape = time.size() <= few_points ? Shape::marked : Shape::lines;
   plot.x = {"time [s]", false};
-  plot.y = {with_unit((group.section == Section::energies ? "change of " : "") + label, group.unit),
+  plot.y = {with_unit((is_change ? "change of " : "") + label, group.unit),
             group.section == Section::residuals && wants_log(plot.curves)};
   plot.caption = caption(time.size(), is_thinned, omitted);
   return plot;

@@ -175,7 +175,7 @@ std::string title_of(const Measure& measure)
   return measure.quantity.empty() ? text : text + " of " + measure.quantity;
 }
 
-/// One curve a combination, in the order of the runs; and the bounds of runs that have no value.
+/// One curve a combination that has values, in the order of the runs; and the bounds of runs that have no value.
 std::vector<Curve> curves_of(const Study& study, const StudyAxis& x, const Measure& measure, const CsvColumn& values)
 {
   const auto at = places(x);
@@ -198,10 +198,15 @@ std::vector<Curve> curves_of(const Study& study, const StudyAxis& x, const Measu
     }
   }
   if (!bound.x.empty()) curves.push_back(std::move(bound));
+  int style = 0; // the same for a combination in all plots, also where others have no value
   for (auto& curve : curves) {
+    curve.style = style++;
     if (curve.title.empty()) curve.title = measure.name;
     sort_by_x(curve);
   }
+  std::erase_if(curves, [](const Curve& curve) {
+    return std::none_of(curve.y.begin(), curve.y.end(), [](double y) { return std::isfinite(y); });
+  });
   return curves;
 }
 
@@ -214,10 +219,7 @@ void add_measure(Page& page, const Study& study, const StudyAxis& x, const Measu
   if (values == nullptr) return nothing("study.csv has no such column.");
   if (values->is_text()) return nothing("not all of its values are numbers, so there is no plot.");
   auto curves = curves_of(study, x, measure, *values);
-  const bool is_any = std::any_of(curves.begin(), curves.end(), [](const Curve& curve) {
-    return std::any_of(curve.y.begin(), curve.y.end(), [](double y) { return std::isfinite(y); });
-  });
-  if (!is_any) return nothing("no run has a value.");
+  if (curves.empty()) return nothing("no run has a value.");
 
   std::vector<double> all_values;
   for (const auto& curve : curves) all_values.insert(all_values.end(), curve.y.begin(), curve.y.end());
@@ -229,7 +231,6 @@ void add_measure(Page& page, const Study& study, const StudyAxis& x, const Measu
     plot.shape = Shape::dots;
     plot.labels = distinct(*x.column);
     plot.x = plot.y;
-    plot.y = {x.label, false};
     for (auto& curve : curves) std::swap(curve.x, curve.y);
   } else {
     plot.shape = Shape::marked;
@@ -237,7 +238,8 @@ void add_measure(Page& page, const Study& study, const StudyAxis& x, const Measu
   }
   const auto n_plots = (curves.size() + max_curves - 1) / max_curves;
   for (std::size_t p = 0; p < n_plots; ++p) {
-    plot.title = title_of(measure) + (n_plots == 1 ? "" : fmt::format(", part {} of {}", p + 1, n_plots));
+    plot.title =
+        title_of(measure) + ", over " + x.label + (n_plots == 1 ? "" : fmt::format(", part {} of {}", p + 1, n_plots));
     plot.curves.assign(curves.begin() + static_cast<long>(p * max_curves),
                        curves.begin() + static_cast<long>(std::min(curves.size(), (p + 1) * max_curves)));
     page.add(plot);
