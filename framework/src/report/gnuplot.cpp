@@ -76,7 +76,10 @@ void run_gnuplot(const TemporaryFolder& folder)
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
   const auto how = WIFSIGNALED(status) ? fmt::format("was killed by signal {}", WTERMSIG(status))
                                        : fmt::format("failed with exit code {}", WEXITSTATUS(status));
-  throw Error(Errc::process, fmt::format("gnuplot {}:\n{}", how, io::read_text(log)));
+  auto said = io::read_text(log);
+  said.erase(0, said.find_first_not_of(" \n"));
+  said.erase(said.find_last_not_of(" \n") + 1);
+  throw Error(Errc::process, fmt::format("gnuplot {}: {}", how, said));
 }
 
 } // namespace

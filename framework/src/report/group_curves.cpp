@@ -24,7 +24,7 @@ struct Range {
 /// What of the axis a column takes; energies are drawn as changes since the start.
 Range range_of(const CsvColumn& column, Section section)
 {
-  const double offset = section == Section::energies && !column.numbers.empty() ? column.numbers.front() : 0.0;
+  const double offset = section == Section::energies ? first_value(column) : 0.0;
   Range range;
   for (const double value : column.numbers) {
     if (!std::isfinite(value - offset)) continue;
@@ -89,6 +89,15 @@ std::size_t rank(const CurveGroup& group)
 
 } // namespace
 
+bool has_values(const CsvColumn& column) { return !std::isnan(first_value(column)); }
+
+double first_value(const CsvColumn& column)
+{
+  const auto found =
+      std::find_if(column.numbers.begin(), column.numbers.end(), [](double value) { return std::isfinite(value); });
+  return found == column.numbers.end() ? std::numeric_limits<double>::quiet_NaN() : *found;
+}
+
 std::string quantity_of(const std::string& column)
 {
   auto name = column;
@@ -114,6 +123,7 @@ std::vector<CurveGroup> group_curves(const CsvTable& history, const std::map<std
     const auto section = section_of(column.name, unit, interfaces);
     const auto key = unit.empty() ? "of " + quantity_of(column.name) : unit;
     const auto range = range_of(column, section);
+    if (!has_values(column)) continue;
     const double span = range.span() > 0.0 ? range.span() : std::numeric_limits<double>::infinity();
     auto at = std::find_if(plots.begin(), plots.end(), [&](const Growing& plot) {
       return plot.group.section == section && plot.key == key && fits(plot, range, span);

@@ -131,9 +131,10 @@ struct Omitted {
 std::vector<double> drawn_values(const CsvColumn& column, Section section, Omitted& omitted)
 {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const double start = first_value(column);
   auto values = column.numbers;
   for (double& value : values) {
-    if (section == Section::energies && std::isfinite(value)) value -= column.numbers.front();
+    if (section == Section::energies && std::isfinite(value)) value -= start;
     if (!std::isfinite(value)) ++omitted.not_finite;
     else if (section == Section::residuals && value <= 0.0) ++omitted.not_positive, value = none;
   }
@@ -155,7 +156,7 @@ std::string caption(std::size_t n_rows, bool is_thinned, const Omitted& omitted)
   return text;
 }
 
-bool starts_elsewhere(const CsvColumn* column) { return column->numbers.front() != 0.0; } // than at zero
+bool starts_elsewhere(const CsvColumn* column) { return first_value(*column) != 0.0; } // than at zero
 
 Plot history_plot(const CurveGroup& group, const std::vector<double>& time)
 {
@@ -167,7 +168,7 @@ Plot history_plot(const CurveGroup& group, const std::vector<double>& time)
     auto& curve = plot.curves.emplace_back();
     curve.title = column->name;
     if (group.section == Section::energies && starts_elsewhere(column))
-      curve.title += fmt::format(" (starts at {:.6g} {})", column->numbers.front(), group.unit);
+      curve.title += fmt::format(" (starts at {:.6g} {})", first_value(*column), group.unit);
     for (const auto i : decimate(time, values, n_buckets)) {
       curve.x.push_back(time[i]);
       curve.y.push_back(values[i]);
@@ -199,18 +200,24 @@ void add_history(Page& page, const fs::path& folder, const io::RunRecord& record
   };
   if (!fs::exists(file)) return nothing("There is no history.csv: the run wrote none, or ended before its first step.");
   if (fs::file_size(file) == 0) return nothing("history.csv is empty.");
-  const auto history = read_csv(file, LastLine::may_be_cut);
+  const auto text = io::read_text(file);
+  if (text.find('\n') == std::string::npos) return nothing("history.csv has no whole header.");
+  const auto history = parse_csv(text, file.string(), LastLine::may_be_cut);
   const auto* time = history.find("time");
   MULLION_REQUIRE(time != nullptr && !time->is_text(), Errc::io,
                   "{}: no column 'time' of numbers, so this is no history of a run", file.string());
   if (history.n_rows == 0) return nothing("history.csv has a header and no rows.");
   const std::map<std::string, std::string> units(record.columns.begin(), record.columns.end());
   const auto groups = group_curves(history, units);
-  if (groups.empty()) return nothing("history.csv has no columns but step and time.");
+  std::string without_values;
+  for (const auto& column : history.columns)
+    if (!has_values(column)) without_values += (without_values.empty() ? "" : ", ") + column.name;
+  if (groups.empty() && without_values.empty()) return nothing("history.csv has no columns but step and time.");
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (g == 0 || groups[g].section != groups[g - 1].section) page.add(heading(title_of(groups[g].section)));
     page.add(history_plot(groups[g], time->numbers));
   }
+  if (!without_values.empty()) page.add(paragraph("Columns of history.csv without a finite number: " + without_values));
 }
 
 // ---- timings, attempts, case -------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -67,8 +68,9 @@ TEST_CASE("a column that would be a flat line beside another one gets a plot of 
 
 TEST_CASE("columns without a known unit share a plot with those of the same field")
 {
-  const auto groups = group_curves(
-      history({{"a.wet.velocity_x", {0, 1}}, {"b.wall.velocity_x", {0, 1}}, {"a.wet.height", {0, 1}}}), {});
+  const auto table = history({{"a.wet.velocity_x", {0, 1}}, {"b.wall.velocity_x", {0, 1}}, {"a.wet.height", {0, 1}}});
+
+  const auto groups = group_curves(table, {});
 
   REQUIRE(groups.size() == 2);
   CHECK(names(groups[0]) == Names{"a.wet.velocity_x", "b.wall.velocity_x"});
@@ -97,12 +99,25 @@ TEST_CASE("ledger, driver, residuals, energies and other outputs have sections o
   CHECK(groups[1].columns.size() == 2); // as changes since the start both can be seen
 }
 
+TEST_CASE("a column without a finite number is in no plot")
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto table = history({{"a.b", {nan, nan}}, {"a.c", {nan, 2}}});
+
+  const auto groups = group_curves(table, {});
+
+  REQUIRE(groups.size() == 1);
+  CHECK(names(groups[0]) == Names{"a.c"});
+  CHECK(first_value(table.columns[3]) == 2);
+}
+
 TEST_CASE("no plot has more curves than can be told apart")
 {
   std::vector<std::pair<std::string, std::vector<double>>> columns;
   for (int i = 0; i < 20; ++i) columns.push_back({"a.wet.velocity[" + std::to_string(i) + "]", {0, 1}});
+  const auto table = history(columns);
 
-  const auto groups = group_curves(history(columns), {});
+  const auto groups = group_curves(table, {});
 
   REQUIRE(groups.size() == 2);
   CHECK(groups[0].columns.size() == 14);
