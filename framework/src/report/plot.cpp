@@ -115,6 +115,8 @@ std::string file_name(const std::string& text)
     if (is_kept) name += c;
     else if (!name.empty() && name.back() != '_') name += '_';
   }
+  constexpr std::size_t at_most = 80; // file systems take 255 bytes
+  name.resize(std::min(name.size(), at_most));
   while (name.ends_with('_')) name.pop_back();
   return name.empty() ? "plot" : name;
 }
@@ -223,8 +225,9 @@ std::string plot_script(const Plot& plot)
     curves += fmt::format("{}{} index {} using {} {} title {}", c == 0 ? "plot " : ", \\\n     ", file(".dat"), c,
                           plot.shape == Shape::bars ? "1:2:3:4:5:6" : "1:2", style_of(plot, c),
                           quote(shorten(plot.curves[c].title, legend_room)));
-  script += fmt::format("set terminal svg noenhanced size {},{} font 'sans-serif,13' rounded\nset output {}\n{}\n",
-                        width, whole, file(".svg"), curves);
+  script += fmt::format(
+      "set terminal svg noenhanced size {},{} font 'sans-serif,13' rounded background 'white'\nset output {}\n{}\n",
+      width, whole, file(".svg"), curves);
   script += fmt::format("set terminal pngcairo noenhanced size {},{} font 'sans,10' rounded\nset output {}\n{}\n",
                         width, whole, file(".png"), curves);
   return script + "unset output\n";

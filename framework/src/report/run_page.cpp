@@ -74,6 +74,7 @@ void add_facts(Page& page, const io::RunRecord& record)
 
 void add_modules(Page& page, const io::Attempt& attempt)
 {
+  if (attempt.modules.empty()) return;
   page.add(heading("Modules"));
   Table table{{"instance", "kind", "plug-in", "version", "runs"}, {}};
   for (const auto& module : attempt.modules)

@@ -68,14 +68,17 @@ std::string text_of(const Json& json, const char* key)
   return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-/// Of an axis with several keys that vary together, the one whose numbers differ most; labels have a column of their
-/// own, by the axis' name.
+/// Of an axis with several keys that vary together, the column whose numbers differ most. Labels have one column, by
+/// the axis' name.
 StudyAxis read_axis(const Json& json, const CsvTable& table, const std::string& file)
 {
-  auto names = json.value("keys", std::vector<std::string>{});
   const auto own = text_of(json, "name");
-  if (const auto labels = json.find("labels"); labels != json.end() && labels->is_array()) names = {own};
-  else names.push_back(own);
+  auto names = json.value("columns", std::vector<std::string>{});
+  if (names.empty()) {
+    const auto labels = json.find("labels");
+    if (labels == json.end() || !labels->is_array()) names = json.value("keys", std::vector<std::string>{});
+    names.push_back(own);
+  }
   StudyAxis axis;
   for (const auto& name : names) {
     const auto* column = table.find(name);

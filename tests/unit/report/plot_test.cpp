@@ -45,6 +45,7 @@ TEST_CASE("file names are letters, digits, minus and underscore")
 {
   CHECK(file_name("../a b/c.d-1") == "a_b_c_d-1");
   CHECK(file_name("..") == "plot");
+  CHECK(file_name(std::string(300, 'x')).size() == 80);
 }
 
 TEST_CASE("bars are stacked in the data, and what is not finite is missing")
