@@ -17,6 +17,8 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <tuple>
+#include <utility>
 
 namespace mullion::report {
 namespace {
@@ -306,7 +308,8 @@ Page study_page(const fs::path& folder)
   add_facts(page, study);
   page.add("<h2>Measures</h2>\n");
   const auto* x = choose_x(study);
-  if (x == nullptr) page.add("<p>No key has more than one value: there is nothing to plot over.</p>\n");
+  if (study.measures.empty()) page.add("<p>The study takes no measures.</p>\n");
+  else if (x == nullptr) page.add("<p>No key has more than one value: there is nothing to plot over.</p>\n");
   else
     for (const auto& measure : study.measures) add_measure(page, study, *x, measure);
   add_runs(page, study);
