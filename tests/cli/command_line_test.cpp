@@ -32,7 +32,7 @@ TEST_CASE("mullion alone and --help show the commands")
 
     CHECK(result.exit_code == 0);
     CHECK(result.err == "");
-    for (const char* command : {"run CASE", "check CASE", "modules [NAME]", "ps", "stop RUN"})
+    for (const char* command : {"run CASE", "check CASE", "modules [NAME]", "report DIR", "ps", "stop RUN"})
       CHECK(has(result.out, command));
   }
 }
@@ -48,7 +48,7 @@ TEST_CASE("--version names the version, the plug-in ABI and the build")
 
 TEST_CASE("each command has a help")
 {
-  for (const char* command : {"check", "modules"}) {
+  for (const char* command : {"check", "modules", "report"}) {
     const auto result = mullion_command({command, "--help"});
 
     CHECK(result.exit_code == 0);

@@ -147,6 +147,8 @@ std::optional<RunRecord> read_run_record(const std::filesystem::path& path)
     RunRecord record;
     json.at("name").get_to(record.name);
     json.at("outcome").get_to(record.outcome);
+    if (const auto columns = json.find("columns"); columns != json.end())
+      for (const auto& [column, unit] : columns->items()) record.columns.emplace_back(column, unit.get<std::string>());
     take_list(json, "attempts", record.attempts, attempt_from_json);
     return record;
   } catch (const nlohmann::json::exception& failure) {
@@ -160,6 +162,8 @@ void write_run_record(const std::filesystem::path& path, const RunRecord& record
   Json json;
   json["name"] = record.name;
   json["outcome"] = record.outcome;
+  json["columns"] = Json::object();
+  for (const auto& [column, unit] : record.columns) json["columns"][column] = unit;
   json["attempts"] = to_list(record.attempts, attempt_to_json);
   write_atomically(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }

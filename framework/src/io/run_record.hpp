@@ -50,6 +50,7 @@ struct Attempt {
 struct RunRecord {
   std::string name;
   std::string outcome = "running"; ///< "running", "completed", "stopped", "failed", ...: the last attempt's
+  std::vector<std::pair<std::string, std::string>> columns; ///< of history.csv: name and SI unit, in their order
   std::vector<Attempt> attempts;
 };
 

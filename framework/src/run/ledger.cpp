@@ -31,8 +31,8 @@ void count(Session& session, const Ledger& ledger, const TimeStep& step)
   const auto put = [&](Eigen::Index fluid_at, Eigen::Index structure_at, Eigen::Index defect_at, Eigen::Index sum_at,
                        double fluid, double structure) {
     state(0, sum_at) += fluid - structure;
-    state(0, fluid_at) = fluid;
-    state(0, structure_at) = structure;
+    state(0, fluid_at) += fluid;
+    state(0, structure_at) += structure;
     state(0, defect_at) = is_offset ? state(0, sum_at) - ahead * fluid + structure : state(0, sum_at);
   };
   put(0, 1, 2, sums, session.read(ledger.fluid.work, 0)(0, 0), session.read(ledger.structure.work, 0)(0, 0));

@@ -1,5 +1,5 @@
-// The interface ledger: the work and the momentum that cross the interface in each coupling step, as either side
-// counted them, and the accumulated difference. It stands in driver/state, so it survives what the run survives.
+// The interface ledger: the work and the momentum that crossed the interface so far, as either side counted them in each
+// coupling step, and the accumulated difference. It stands in driver/state, so it survives what the run survives.
 //
 // What the fluid lost at its wall and what the structure got would be the same if the coupling were exact; the defect
 // sum(W_f - W_s) is positive when energy is lost at the interface, negative when the interface makes some. It is a
@@ -38,7 +38,8 @@ inline constexpr const char* ledger_field = "ledger"; ///< its name in driver/st
 [[nodiscard]] int ledger_size(const Ledger& ledger);
 
 /// Names and units of the numbers that history.csv shows; they come first in the field:
-/// work_fluid, work_structure (of the step), work_defect (so far), and the same for the impulses.
+/// work_fluid, work_structure, work_defect, and the same for the impulses, all since the start. (The modules' own
+/// columns have each step's.)
 struct LedgerColumn {
   std::string name, unit;
 };

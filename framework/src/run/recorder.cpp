@@ -122,6 +122,17 @@ void Recorder::choose_columns()
   }
   choose_driver_columns();
   row_.resize(columns_.size());
+  for (const auto& column : columns_) record_.columns.emplace_back(column.name, unit_of(column));
+  io::write_run_record(out_ / "run.json", record_); // with units, for who looks while the run goes on, or after a crash
+}
+
+std::string Recorder::unit_of(const Column& column) const
+{
+  const auto& ledger = session_->ledger();
+  const bool is_ledger =
+      ledger && column.at.window == ledger->state.window && column.at.field == ledger->state.field; // several units
+  if (is_ledger) return ledger_columns(*ledger)[static_cast<std::size_t>(column.entity)].unit;
+  return session_->windows().view(column.at.window).fields()[column.at.field].unit;
 }
 
 void Recorder::choose_driver_columns()
@@ -164,7 +175,7 @@ void Recorder::watch_interface(const TimeStep& step)
   sample.defect = ledger(0, 2);
   if (structure_energy_) sample.structure_energy = session_->read(*structure_energy_, 1)(0, 0);
   interface_.add(sample);
-  if (step.index > 0) work_structure_ += ledger(0, 1);
+  work_structure_ = ledger(0, 1);
   energy_scale_ = std::max(energy_scale_, sample.structure_energy + std::abs(work_structure_));
 
   // Looked at seldom enough to cost nothing: after 2000, 4000, 8000, … steps.

@@ -63,6 +63,7 @@ private:
   void choose_columns();
   void choose_driver_columns();
   void watch_interface(const TimeStep& step);
+  [[nodiscard]] std::string unit_of(const Column& column) const; ///< SI, as in the field's declaration
   [[nodiscard]] double measure(const Column& column) const;
   [[nodiscard]] std::vector<io::WindowData> snapshot() const;
   void collect_timings();

@@ -32,7 +32,7 @@ RunRecord some_record()
   attempt.timings = {{"fluid", "step", 100, 1.5, 1.25, 0.25}};
   attempt.events = {{50, "swap", "structure", "elastic_bar -> rigid"}};
   attempt.files = {"history.csv", "results.xdmf"};
-  return {"closed-piston", "running", {attempt}};
+  return {"closed-piston", "running", {{"structure.wet.velocity", "m/s"}, {"driver.iterations", "1"}}, {attempt}};
 }
 
 } // namespace
@@ -47,6 +47,7 @@ TEST_CASE("a run's record comes back as it was written")
 
   REQUIRE(record.has_value());
   CHECK(record->name == "closed-piston");
+  CHECK(record->columns == written.columns); // in order
   REQUIRE(record->attempts.size() == 1);
   const auto& attempt = record->attempts[0];
   CHECK(attempt.versions == written.attempts[0].versions); // in order
