@@ -27,6 +27,7 @@ struct Command {
 constexpr Command commands[] = {
     {"run", "CASE [options]", "run a case", &cli::run_run},
     {"check", "CASE [options]", "validate a case without running it", &cli::run_check},
+    {"study", "STUDY [options]", "run a matrix of cases, to one table", &cli::run_study},
     {"modules", "[NAME]", "list modules and drivers, or the parameters and fields of one", &cli::run_modules},
     {"ps", "", "list the live runs", &cli::run_ps},
     {"stop", "RUN", "end a live run cleanly at the next step", &cli::run_stop},
