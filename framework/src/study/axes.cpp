@@ -134,15 +134,14 @@ const List* read_list(const Node& node, const char* key, const char* wish, Diagn
 {
   const Node* value = value_of(node, key);
   const List* list = value == nullptr ? nullptr : value->list();
-  if (list != nullptr && !list->empty() && list->size() <= max_points) return list;
   if (value == nullptr) diagnostics.add(node.place, fmt::format("[[vary]] has no '{}'; expected {}", key, wish));
-  else
+  else if (list == nullptr)
+    diagnostics.add(value->place, fmt::format("[[vary]] {} = {}; expected {}", key, config::describe(*value), wish));
+  else if (list->empty()) diagnostics.add(value->place, fmt::format("[[vary]] {} is empty; expected {}", key, wish));
+  else if (list->size() > max_points)
     diagnostics.add(value->place,
-                    fmt::format("[[vary]] {} = {}; expected {}", key,
-                                list != nullptr && !list->empty()
-                                    ? fmt::format("has {} entries, at most {} are", list->size(), max_points)
-                                    : config::describe(*value),
-                                wish));
+                    fmt::format("[[vary]] {} has {} entries; expected at most {}", key, list->size(), max_points));
+  else return list;
   return nullptr;
 }
 

@@ -162,6 +162,13 @@ std::string text_of(const std::vector<ParameterValue>& parameters, const std::st
   return text == nullptr ? "" : *text;
 }
 
+config::Place place_of(const MeasureSpec& measure, const std::string& key)
+{
+  const auto* table = measure.node.table();
+  const auto* entry = table == nullptr ? nullptr : table->find(key);
+  return entry == nullptr ? measure.node.place : entry->value.place;
+}
+
 std::vector<MeasureSpec> read_measures(const config::Node& root, config::Diagnostics& diagnostics)
 {
   std::vector<MeasureSpec> measures;
@@ -184,8 +191,7 @@ std::vector<MeasureSpec> read_measures(const config::Node& root, config::Diagnos
     if (has_terms) read_terms(node, measure, diagnostics);
     measure.name = text_of(measure.parameters, "name");
     measure.kind = kind->name;
-    measure.place = node.place;
-    if (const auto* name = node.table()->find("name"); name != nullptr) measure.place = name->value.place;
+    measure.node = node;
     measures.push_back(std::move(measure));
   }
   return measures;

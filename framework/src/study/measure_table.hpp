@@ -19,8 +19,11 @@ struct MeasureSpec {
   std::string name, kind;
   std::vector<ParameterValue> parameters; ///< all that its kind takes
   std::vector<std::pair<std::string, double>> terms;
-  config::Place place;
+  config::Node node; ///< the table, for places
 };
+
+/// Where a key of the measure stands; the table, if it is not given.
+[[nodiscard]] config::Place place_of(const MeasureSpec& measure, const std::string& key);
 
 /// Reference data by the path under which the study file names them.
 using References = std::map<std::string, ColumnTable>;

@@ -50,16 +50,17 @@ std::size_t n_within(std::span<const double> times, double length)
   return static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), end) - times.begin());
 }
 
-/// Sums from the first sample on, so that the deviation of any window costs two differences. Extended precision:
-/// a difference of sums that an oscillation has grown through would cancel.
+/// Sums from the first sample on, so that the deviation of any window costs two differences. In extended precision
+/// and about a value near the first samples: what is small at the begin must not drown in what comes later.
 class RunningDeviation {
 public:
-  RunningDeviation(std::span<const double> values, std::optional<double> offset)
+  /// @param offset  deviations are from it; none: from each window's mean
+  /// @param about   a value near those of the first windows
+  RunningDeviation(std::span<const double> values, std::optional<double> offset, double about)
       : is_about_offset_(offset.has_value()), sums_(values.size() + 1, 0.0L), squares_(values.size() + 1, 0.0L)
   {
-    const double about = offset.value_or(mean(values));
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto q = static_cast<long double>(values[i]) - about;
+      const auto q = static_cast<long double>(values[i]) - offset.value_or(about);
       sums_[i + 1] = sums_[i] + q;
       squares_[i + 1] = squares_[i] + q * q;
     }
@@ -241,7 +242,7 @@ Doubling error_doubling(std::span<const double> times, std::span<const double> v
                         std::optional<double> offset)
 {
   check_window(times, window);
-  const RunningDeviation deviation(values, offset);
+  const RunningDeviation deviation(values, offset, mean(values.first(n_within(times, window))));
   double first = 0.0, centre = 0.0;
   for (std::size_t begin = 0; begin < times.size(); ++begin) {
     if (times[begin] + window > times.back() + rounding * mean_step(times)) break;

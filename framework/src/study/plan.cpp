@@ -55,6 +55,15 @@ std::vector<Diagnostic> explain(const StudyFile& study, std::size_t run, const s
   return out;
 }
 
+/// Who turned the history off: an override, or the case.
+std::string place_of_history(const StudyFile& study, std::size_t run)
+{
+  std::string place = study.case_file;
+  for (const auto* setting : study.settings_of(run))
+    if (setting->key == "output.history") place = "--set " + setting->override_text();
+  return place;
+}
+
 } // namespace
 
 bool needs_history(const std::string& kind) { return kind != "wall_time" && kind != "steps"; }
@@ -78,8 +87,8 @@ Plan make_plan(const StudyFile& study)
     auto result =
         read_case(study.case_file, {run.overrides, study.placement == "inline", study.placement == "processes"});
     if (result.diagnostics.empty() && is_history_needed && !result.value.has_history)
-      result.diagnostics.push_back({study.case_file, "[output] history = false, but the study measures history.csv; "
-                                                     "expected true"});
+      result.diagnostics.push_back({place_of_history(study, r), "[output] history = false, but the study measures "
+                                                                "history.csv; expected true"});
     if (!result.diagnostics.empty()) {
       plan.diagnostics = explain(study, r, result.diagnostics);
       return plan;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 #include <sys/wait.h>
 
 namespace mullion::study {
@@ -66,20 +67,28 @@ std::string definition_of_all(const Measuring& measuring)
   return checksum(text);
 }
 
-/// Every measure of a history's text; those that cannot be taken are told and leave their columns empty.
-void measure_text(RunResult& result, const std::string& history, const std::string& source, const Measuring& measuring)
+/// Process numbers differ from run to run; the table of the same study must not.
+std::string without_numbers(const std::string& message)
 {
-  ColumnTable table;
-  if (!history.empty()) table = parse_columns(history, source);
+  static const std::regex process("\\bprocess \\d+");
+  return std::regex_replace(message, process, "process");
+}
+
+/// Every measure of a history; those that cannot be taken are told and leave their columns empty.
+void measure_history(RunResult& result, const ColumnTable& history, const std::string& problem,
+                     const Measuring& measuring)
+{
   for (const auto& m : measuring.measures) {
+    const auto n_columns = columns_of(m).size();
     try {
-      auto values = evaluate(m, table, {result.wall_s, result.steps});
+      if (needs_history(m.kind) && !problem.empty()) throw Error(Errc::io, problem);
+      auto values = evaluate(m, history, {result.wall_s, result.steps});
       for (auto& value : values)
         if (value && !std::isfinite(*value)) value.reset();
       result.values.insert(result.values.end(), values.begin(), values.end());
     } catch (const Error& error) {
       result.problems.push_back(one_line(fmt::format("{}: {}", m.name, error.what())));
-      result.values.resize(result.values.size() + columns_of(m).size());
+      result.values.resize(result.values.size() + n_columns);
     }
   }
 }
@@ -99,7 +108,7 @@ RunResult collect(const fs::path& folder, int status)
   if (record && !record->attempts.empty()) {
     const auto& attempt = record->attempts.back();
     result.outcome = record->outcome;
-    result.message = one_line(attempt.error);
+    result.message = without_numbers(one_line(attempt.error));
     result.steps = attempt.steps;
     result.wall_s = attempt.wall_s;
   }
@@ -107,7 +116,7 @@ RunResult collect(const fs::path& folder, int status)
   result.has_died = !is_closed;
   if (has_ended_well && (result.outcome == "completed" || result.outcome == "stopped")) return result;
   result.outcome = "failed";
-  if (result.message.empty()) result.message = one_line(printed_error(folder / "output.txt"));
+  if (result.message.empty()) result.message = without_numbers(one_line(printed_error(folder / "output.txt")));
   if (result.message.empty()) result.message = "the process of the run " + process::describe_end(status);
   return result;
 }
@@ -117,14 +126,18 @@ void measure(RunResult& result, const fs::path& folder, const Measuring& measuri
   result.values.clear();
   result.problems.clear();
   if (!can_be_measured(result, measuring)) return;
-  std::string history;
-  const auto file = folder / "history.csv";
-  std::error_code none;
-  if (is_history_needed(result, measuring) && fs::exists(file, none)) {
-    history = io::read_text(file);
-    result.history = checksum(history);
+  ColumnTable history;
+  std::string problem;
+  if (is_history_needed(result, measuring)) {
+    try {
+      const auto text = io::read_text(folder / "history.csv");
+      result.history = checksum(text);
+      history = parse_columns(text, "history.csv");
+    } catch (const Error& error) {
+      problem = error.what();
+    }
   }
-  measure_text(result, history, file.string(), measuring);
+  measure_history(result, history, problem, measuring);
 }
 
 void write_result(const fs::path& folder, const RunResult& result, const Measuring& measuring)
@@ -174,9 +187,9 @@ std::optional<RunResult> read_result(const fs::path& folder, const std::string& 
   }
   if (!fs::exists(folder / "history.csv", none))
     return has_definition ? std::optional(std::move(result)) : std::nullopt;
-  const auto before = result.history;
+  const bool is_altered = !result.history.empty() && checksum(io::read_text(folder / "history.csv")) != result.history;
+  if (is_altered) return std::nullopt;
   measure(result, folder, measuring);
-  if (!before.empty() && result.history != before) return std::nullopt;
   if (!has_definition) write_result(folder, result, measuring);
   return result;
 }

@@ -213,11 +213,11 @@ public:
     Progress progress;
     while (!children_.empty() || (!waiting_.empty() && stopped_by_.empty())) {
       while (children_.size() < n_parallel && !waiting_.empty() && stopped_by_.empty()) start_next();
+      counts_.n_running = children_.size();
+      progress.show(counts_);
       if (const int signal = signals.wait(std::chrono::milliseconds(100)); signal == SIGTSTP) pause();
       else if (signal != 0 && signal != SIGCHLD) stop(signal);
       reap();
-      counts_.n_running = children_.size();
-      progress.show(counts_);
       if (Clock::now() >= next_table_) {
         write_csv();
         next_table_ = Clock::now() + table_interval;

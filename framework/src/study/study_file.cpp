@@ -73,6 +73,12 @@ void read_header(const Node& root, StudyFile& study, Diagnostics& diagnostics)
   study.keep = options.keep;
   study.measures_failed = options.measures_failed;
   const auto* name = entry->value.table()->find("name");
+  const auto* case_file = entry->value.table()->find("case");
+  std::error_code none;
+  if (case_file != nullptr && values[1].is_given && !fs::is_regular_file(study.case_file, none))
+    diagnostics.add(case_file->value.place, fmt::format("[study] case = {}: there is no file {}; expected the case "
+                                                        "file, relative to the study file",
+                                                        config::write_value(case_file->value), study.case_file));
   if (name != nullptr && values[0].is_given && (!is_plain_name(study.name) || study.name.size() > longest_name))
     diagnostics.add(name->value.place, fmt::format("[study] name = {} is no name of a study; expected 1 to {} letters, "
                                                    "digits, '.', '_' or '-', and not dots alone",
@@ -90,33 +96,36 @@ void flatten(const config::Table& table, const std::string& prefix, const char* 
   }
 }
 
+/// The file that a measure, or a point for it, names at `place`.
 void read_reference(const MeasureSpec& measure, const std::string& file, const Place& place, StudyFile& study,
                     Diagnostics& diagnostics)
 {
   if (file.empty()) return; // reported as missing
-  const auto path = beside(study.file, file);
+  const auto path = beside(study.file, file).string();
   try {
-    if (!study.references.contains(file))
-      study.references.emplace(file, parse_columns(io::read_text(path), path.string()));
-    const auto& table = study.references.at(file);
-    for (const char* key : {"time_column", "value_column"})
-      if (const auto column = text_of(measure.parameters, key); !column.empty())
-        static_cast<void>(table.column(column));
+    if (!study.references.contains(file)) study.references.emplace(file, parse_columns(io::read_text(path), path));
   } catch (const Error& error) {
-    diagnostics.add(place, fmt::format("[[measure]] {}: {}: {}", measure.name, path.string(), error.what()));
+    diagnostics.add(place, fmt::format("[[measure]] {}: {}", measure.name, error.what()));
+    return;
   }
+  const auto& table = study.references.at(file);
+  for (const char* key : {"time_column", "value_column"})
+    if (const auto column = text_of(measure.parameters, key); !table.has(column))
+      diagnostics.add(place_of(measure, key), fmt::format("[[measure]] {} = \"{}\" is no column of {}{}", key, column,
+                                                          path, config::suggestion(column, table.names)));
 }
 
 void read_references(StudyFile& study, Diagnostics& diagnostics)
 {
   for (const auto& measure : study.measures) {
     if (measure.kind != "reference_error") continue;
+    const auto place = place_of(measure, "file");
     const auto before = diagnostics.size();
-    read_reference(measure, text_of(measure.parameters, "file"), measure.place, study, diagnostics);
+    read_reference(measure, text_of(measure.parameters, "file"), place, study, diagnostics);
     for (const auto& axis : study.axes)
       for (const auto& point : axis.points)
         if (diagnostics.size() == before)
-          read_reference(measure, text_of(point.measure, "file"), measure.place, study, diagnostics);
+          read_reference(measure, text_of(point.measure, "file"), place, study, diagnostics);
   }
 }
 
@@ -126,15 +135,17 @@ void check_columns(const StudyFile& study, Diagnostics& diagnostics)
   std::set<std::string> names;
   for (const auto& axis : study.axes) names.insert(axis.columns.begin(), axis.columns.end());
   for (const auto& spec : study.measures) {
-    if (spec.name.empty() || !check_column(spec.name, spec.place, "[[measure]] name", diagnostics)) continue;
+    if (spec.name.empty() || !check_column(spec.name, place_of(spec, "name"), "[[measure]] name", diagnostics))
+      continue;
     Measure measure;
     measure.name = spec.name;
     measure.kind = spec.kind;
     for (const auto& column : columns_of(measure))
       if (!names.insert(column).second)
-        diagnostics.add(spec.place, fmt::format("[[measure]] name = \"{}\": there is another column '{}'; expected "
-                                                "another name",
-                                                spec.name, column));
+        diagnostics.add(place_of(spec, "name"),
+                        fmt::format("[[measure]] name = \"{}\": there is another column '{}'; expected "
+                                    "another name",
+                                    spec.name, column));
   }
 }
 
@@ -246,10 +257,13 @@ bool check_key(const std::string& key, const Place& place, const char* label, Di
 
 bool check_column(const std::string& name, const Place& place, const char* label, Diagnostics& diagnostics)
 {
-  const bool is_taken = name == "index" || name == "outcome" || name == "message";
-  if (!is_taken && is_plain_name(name)) return true;
-  diagnostics.add(place, fmt::format("{} = \"{}\" {}; expected letters, digits, '.', '_' or '-'", label, name,
-                                     is_taken ? "is a column of every study" : "is no name of a column"));
+  if (name == "index" || name == "outcome" || name == "message") {
+    diagnostics.add(place, fmt::format("{} = \"{}\" is a column of every study; expected another name", label, name));
+    return false;
+  }
+  if (is_plain_name(name)) return true;
+  diagnostics.add(
+      place, fmt::format("{} = \"{}\" is no name of a column; expected letters, digits, '.', '_' or '-'", label, name));
   return false;
 }
 
