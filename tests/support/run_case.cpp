@@ -110,11 +110,16 @@ std::unique_ptr<Process> RunFolder::start(const CaseRun& run) const
 
 ProcessResult RunFolder::run(const CaseRun& run) const { return start(run)->wait(); }
 
-ProcessResult RunFolder::command(const std::vector<std::string>& arguments) const
+std::unique_ptr<Process> RunFolder::start_command(const std::vector<std::string>& arguments) const
 {
   std::vector<std::string> command = {MULLION_BUILD_DIR "/bin/mullion"};
   command.insert(command.end(), arguments.begin(), arguments.end());
-  return run_process(command, options(std::chrono::seconds(60)));
+  return std::make_unique<Process>(command, options(std::chrono::seconds(60)));
+}
+
+ProcessResult RunFolder::command(const std::vector<std::string>& arguments) const
+{
+  return start_command(arguments)->wait();
 }
 
 std::vector<RunProcess> RunFolder::processes() const

@@ -52,6 +52,7 @@ public:
   [[nodiscard]] std::unique_ptr<Process> start(const CaseRun& run) const;
   /// Another command: {"stop", "closed-piston"}.
   [[nodiscard]] ProcessResult command(const std::vector<std::string>& arguments) const;
+  [[nodiscard]] std::unique_ptr<Process> start_command(const std::vector<std::string>& arguments) const;
 
   /// The live processes of all runs of this folder; what is dead and not yet reaped does not count.
   [[nodiscard]] std::vector<RunProcess> processes() const;

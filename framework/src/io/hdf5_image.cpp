@@ -76,6 +76,16 @@ Hdf5Handle variable_text()
   return type;
 }
 
+/// Datasets hold texts of one length: those of variable length need a fill value, and lie scattered in the file.
+Hdf5Handle fixed_text(std::size_t longest)
+{
+  auto type = own(H5Tcopy(H5T_C_S1), H5Tclose, "make", "a text type");
+  check(H5Tset_size(type.get(), longest), "size", "a text type");
+  check(H5Tset_strpad(type.get(), H5T_STR_NULLPAD), "pad", "a text type");
+  check(H5Tset_cset(type.get(), H5T_CSET_UTF8), "set", "the character set of a text type");
+  return type;
+}
+
 } // namespace
 
 Hdf5Handle& Hdf5Handle::operator=(Hdf5Handle&& other) noexcept
@@ -135,6 +145,16 @@ void ImageBuilder::dataset(const std::string& path, const std::int32_t* values, 
 void ImageBuilder::dataset(const std::string& path, const std::int64_t* values, const Extents& extents)
 {
   write(path, H5T_STD_I64LE, H5T_NATIVE_INT64, values, extents);
+}
+
+void ImageBuilder::dataset(const std::string& path, const std::vector<std::string>& texts)
+{
+  std::size_t longest = 1; // a type of no bytes there is not
+  for (const auto& text : texts) longest = std::max(longest, text.size());
+  std::string block; // zeros behind the shorter ones
+  for (const auto& text : texts) (block += text).append(longest - text.size(), '\0');
+  const auto type = fixed_text(longest);
+  write(path, type.get(), type.get(), block.data(), {static_cast<std::int64_t>(texts.size())});
 }
 
 void ImageBuilder::dataset(const std::string& path, std::span<const std::byte> values)
@@ -274,6 +294,26 @@ std::vector<std::int32_t> ImageReader::i32(const std::string& path) const
 std::vector<std::int64_t> ImageReader::i64(const std::string& path) const
 {
   return read<std::int64_t>(path, H5T_NATIVE_INT64);
+}
+
+std::vector<std::string> ImageReader::texts(const std::string& path) const
+{
+  const auto where = source_ + ":" + path;
+  const auto set = own(H5Dopen2(file_.get(), path.c_str(), H5P_DEFAULT), H5Dclose, "open", where);
+  const auto stored = own(H5Dget_type(set.get()), H5Tclose, "read the type of", where);
+  MULLION_REQUIRE(H5Tget_class(stored.get()) == H5T_STRING && H5Tis_variable_str(stored.get()) == 0 &&
+                      extents(path).size() == 1,
+                  Errc::io, "{} does not hold a list of texts", where);
+  const auto longest = H5Tget_size(stored.get());
+  std::string block(longest * static_cast<std::size_t>(extents(path)[0]), '\0');
+  if (!block.empty())
+    check(H5Dread(set.get(), fixed_text(longest).get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, block.data()), "read", where);
+  std::vector<std::string> texts;
+  for (std::size_t begin = 0; begin < block.size(); begin += longest) {
+    const auto text = std::string_view(block).substr(begin, longest);
+    texts.emplace_back(text.substr(0, text.find('\0')));
+  }
+  return texts;
 }
 
 Bytes ImageReader::bytes(const std::string& path) const { return read<std::byte>(path, H5T_NATIVE_UINT8); }

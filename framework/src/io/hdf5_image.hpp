@@ -44,6 +44,8 @@ public:
   void dataset(const std::string& path, const double* values, const Extents& extents);
   void dataset(const std::string& path, const std::int32_t* values, const Extents& extents);
   void dataset(const std::string& path, const std::int64_t* values, const Extents& extents);
+  /// Texts: UTF-8, all as long as the longest, zeros behind the others.
+  void dataset(const std::string& path, const std::vector<std::string>& texts);
   /// Raw bytes (for opaque blocks such as a window's memory), as unsigned 8-bit integers.
   void dataset(const std::string& path, std::span<const std::byte> values);
   /// Attributes of a group or dataset that exists; texts are UTF-8 of variable length.
@@ -79,6 +81,7 @@ public:
   [[nodiscard]] std::vector<double> f64(const std::string& path) const;
   [[nodiscard]] std::vector<std::int32_t> i32(const std::string& path) const;
   [[nodiscard]] std::vector<std::int64_t> i64(const std::string& path) const;
+  [[nodiscard]] std::vector<std::string> texts(const std::string& path) const;
   [[nodiscard]] Bytes bytes(const std::string& path) const;
   [[nodiscard]] std::string text_attribute(const std::string& path, const std::string& name) const;
   [[nodiscard]] double f64_attribute(const std::string& path, const std::string& name) const;
