@@ -6,6 +6,7 @@
 #include "io/atomic_file.hpp"
 #include "report/csv_table.hpp"
 #include "report/html.hpp"
+#include "report/overlay.hpp"
 
 #include <mullion/sdk/error.hpp>
 
@@ -28,6 +29,7 @@ using Json = nlohmann::json;
 
 /// What was varied, and the column that says how far.
 struct StudyAxis {
+  std::string name;
   std::string label; ///< with its unit, if study.json tells one
   const CsvColumn* column = nullptr;
   std::size_t n_distinct = 0;
@@ -41,6 +43,7 @@ struct Study {
   std::string name, the_case;
   std::vector<StudyAxis> axes;
   std::vector<Measure> measures;
+  Json plots = Json::array(); ///< histories to draw over one another
   CsvTable table;
 };
 
@@ -88,7 +91,7 @@ StudyAxis read_axis(const Json& json, const CsvTable& table, const std::string& 
     const auto n = distinct(*column).size();
     const bool is_better = axis.column == nullptr || (!column->is_text() && axis.column->is_text()) ||
                            (column->is_text() == axis.column->is_text() && n > axis.n_distinct);
-    if (is_better) axis = {name, column, n};
+    if (is_better) axis = {own, name, column, n};
   }
   MULLION_REQUIRE(axis.column != nullptr, Errc::io, "{}: axis '{}' has no column of its own in study.csv", file, own);
   if (const auto unit = text_of(json, "unit"); !unit.empty()) axis.label += fmt::format(" [{}]", unit);
@@ -108,6 +111,7 @@ Study read_study(const fs::path& folder)
     for (const auto& m : json.at("measures"))
       study.measures.push_back(
           {m.at("name").get<std::string>(), text_of(m, "kind"), text_of(m, "quantity"), text_of(m, "unit")});
+    study.plots = json.value("plots", Json::array());
   } catch (const nlohmann::json::exception& failure) {
     throw Error(Errc::io, fmt::format("{} does not describe a study: {}", file, failure.what()));
   }
@@ -251,6 +255,21 @@ void add_measure(Page& page, const Study& study, const StudyAxis& x, const Measu
   }
 }
 
+/// The [[plot]] tables of the study: histories over one another.
+void add_overlays(Page& page, const fs::path& folder, const Study& study)
+{
+  if (study.plots.empty()) return;
+  page.add("<h2>Histories</h2>\n");
+  std::vector<const CsvColumn*> columns;
+  for (const auto& axis : study.axes) columns.push_back(axis.column);
+  for (const auto& plot : study.plots) {
+    const auto found = std::find_if(study.axes.begin(), study.axes.end(),
+                                    [&](const auto& axis) { return axis.name == text_of(plot, "curves"); });
+    const auto curves = static_cast<std::size_t>(found - study.axes.begin());
+    add_overlay(page, folder, plot, study.table, columns, curves == columns.size() ? 0 : curves);
+  }
+}
+
 // ---- the table ---------------------------------------------------------------------------------------------------
 
 void add_runs(Page& page, const Study& study)
@@ -312,6 +331,7 @@ Page study_page(const fs::path& folder)
   else if (x == nullptr) page.add("<p>No key has more than one value: there is nothing to plot over.</p>\n");
   else
     for (const auto& measure : study.measures) add_measure(page, study, *x, measure);
+  add_overlays(page, folder, study);
   add_runs(page, study);
   return page;
 }

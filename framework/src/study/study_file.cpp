@@ -169,7 +169,7 @@ std::vector<std::pair<std::string, std::string>> identity_of(Node root, bool wit
         if (key.key != "measure_failed")
           identity.emplace_back(fmt::format("[{}] {}", entry.key, key.key), config::write_value(key.value));
     } else if (auto* list = std::get_if<config::List>(&entry.value.value);
-               list != nullptr && (entry.key != "measure" || with_measures)) {
+               list != nullptr && entry.key != "plot" && (entry.key != "measure" || with_measures)) {
       int number = 0;
       for (auto& element : *list) {
         auto* const vary = element.table();
@@ -279,7 +279,7 @@ StudyFileResult parse_study(const std::string& text, const std::string& file)
     return result;
   }
   const Node& root = std::get<Node>(parsed);
-  const std::vector<std::string> known = {"study", "set", "vary", "measure"};
+  const std::vector<std::string> known = {"study", "set", "vary", "measure", "plot"};
   for (const auto& entry : root.table()->entries)
     if (std::find(known.begin(), known.end(), entry.key) == known.end())
       result.diagnostics.add(entry.place,
@@ -289,6 +289,9 @@ StudyFileResult parse_study(const std::string& text, const std::string& file)
     study.settings = read_settings(set->value, "[set]", result.diagnostics);
   study.measures = read_measures(root, result.diagnostics);
   study.axes = read_axes(root, study.measures, result.diagnostics);
+  std::vector<std::string> axis_names;
+  for (const auto& axis : study.axes) axis_names.push_back(axis.name);
+  study.plots = read_plots(root, axis_names, result.diagnostics);
   if (!result.diagnostics.empty()) return result;
   check_settings(study, result.diagnostics);
   check_columns(study, result.diagnostics);

@@ -5,6 +5,7 @@
 #include "config/diagnostics.hpp"
 #include "config/toml_document.hpp"
 #include "study/measure_table.hpp"
+#include "study/plot_table.hpp"
 
 #include <cstddef>
 #include <string>
@@ -47,6 +48,7 @@ struct StudyFile {
   std::vector<Setting> settings;
   std::vector<Axis> axes;
   std::vector<MeasureSpec> measures;
+  std::vector<PlotSpec> plots;
   References references;
   std::string text; ///< the file as it stands
   /// What the finished runs in a folder depend on, part by part, as TOML: two files that agree in it may share one.

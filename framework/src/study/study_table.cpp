@@ -174,6 +174,19 @@ std::string json_text(const StudyFile& study, std::span<const std::optional<RunR
                                 {"quantity", quantity_of(measure)},
                                 {"unit", unit_of(measure)},
                                 {"columns", columns_of(measure)}});
+  json["plots"] = Json::array();
+  for (const auto& plot : study.plots)
+    json["plots"].push_back({{"title", plot.title},
+                             {"factors", plot.factors()},
+                             {"curves", plot.curves},
+                             {"x_scale", plot.x_scale},
+                             {"x_label", plot.x_label},
+                             {"y_scale", plot.y_scale},
+                             {"y_label", plot.y_label},
+                             {"from", plot.from},
+                             {"to", plot.to},
+                             {"normalise", plot.normalise},
+                             {"until", plot.until}});
   json["runs"] = results.size();
   json["completed"] = count(results, "completed");
   json["failed"] = count(results, "failed");
