@@ -193,6 +193,8 @@ public:
   {
     for (std::size_t r = 0; r < results_.size(); ++r) {
       auto result = study::read_result(folder_of(r), plan_.runs[r].fingerprint, measuring_of(r));
+      std::error_code none;
+      if (!result && fs::exists(folder_of(r) / "done.json", none)) ++n_outdated_;
       if (!result || (has_retry && result->outcome != "completed")) {
         waiting_.push_back(r);
         continue;
@@ -234,6 +236,8 @@ public:
   }
   [[nodiscard]] const std::vector<std::optional<RunResult>>& results() const { return results_; }
   [[nodiscard]] const Counts& counts() const { return counts_; }
+  /// Runs that were finished, but with another case, program or plug-in, or whose files have changed.
+  [[nodiscard]] std::size_t n_outdated() const { return n_outdated_; }
 
 private:
   struct Child {
@@ -355,6 +359,7 @@ private:
   std::vector<std::size_t> waiting_; ///< the next one at the back
   std::vector<Child> children_;
   Counts counts_;
+  std::size_t n_outdated_ = 0;
   std::set<std::string> reported_; ///< problems of measures: the same in each run, as a rule
   std::string stopped_by_;
   Clock::time_point stopped_at_{}, next_table_ = Clock::now() + table_interval;
@@ -433,6 +438,10 @@ StudyOutcome run_study(const StudyOptions& options)
   if (runner.counts().n_failed > 0)
     log::info("study", "{} of those done before failed or were stopped; --retry does them again",
               runner.counts().n_failed);
+  if (runner.n_outdated() > 0)
+    log::warning("study",
+                 "{} of the finished runs must be done again: the case, mullion, a plug-in or their files changed",
+                 runner.n_outdated());
   const auto stopped_by = runner.run(n_parallel);
   return finish_study(study, runner, out, stopped_by, seconds_since(begin));
 }
