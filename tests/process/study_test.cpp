@@ -227,6 +227,27 @@ TEST_CASE("a second Ctrl-C ends runs at once that never come to the end of a ste
   test::check_nothing_left(folder);
 }
 
+TEST_CASE("a run that is stopped by its name is measured up to there and says so; --retry does it whole")
+{
+  const test::RunFolder folder;
+  write_study(folder, head() +
+                          "[set]\n\"structure.fault\" = \"slow\"\n\"structure.at_step\" = 30\n"
+                          "\"structure.duration\" = 0.3\n" +
+                          measures);
+  const auto study = folder.start_command(arguments());
+  REQUIRE(folder.wait_for_step("s.0", 29));
+
+  CHECK(folder.command({"stop", "s.0"}).exit_code == 0);
+  const auto stopped = study->wait();
+
+  CHECK(stopped.exit_code == 1);
+  CHECK(test::read_file(folder / "out" / "study.csv").starts_with("index,outcome,u,p,n,message\n0,stopped,"));
+  CHECK(has(test::read_file(folder / "out" / "study.csv"), ",30,mullion stop\n")); // the slow step is finished
+  CHECK(folder.command(arguments()).exit_code == 1);
+  CHECK(folder.command(arguments("out", {"--retry"})).exit_code == 0);
+  CHECK(has(test::read_file(folder / "out" / "study.csv"), ",60,\n"));
+}
+
 TEST_CASE("new measures are taken from the kept histories without running anything")
 {
   const test::RunFolder folder;
