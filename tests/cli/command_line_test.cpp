@@ -32,7 +32,7 @@ TEST_CASE("mullion alone and --help show the commands")
 
     CHECK(result.exit_code == 0);
     CHECK(result.err == "");
-    for (const char* command : {"run CASE", "check CASE", "modules [NAME]", "report DIR", "ps", "stop RUN"})
+    for (const char* command : {"run CASE", "check CASE", "study STUDY", "modules [NAME]", "report DIR", "ps", "stop RUN"})
       CHECK(has(result.out, command));
   }
 }

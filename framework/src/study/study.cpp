@@ -2,31 +2,26 @@
 // time, and writes the table.
 //
 // Every run is a process of its own, `mullion run`, and dies with this one. All that must survive a kill stands in
-// the folder: study.toml (whose folder it is) and a done.json per finished run. The folder's lock file is open in every
-// process of the study: the lock is free only when the last of them is gone, so a study that is started right after
-// another was killed waits for the remains of that one.
+// the folder: study.toml (whose folder it is) and a done.json per finished run.
 #include <mullion/app/study.hpp>
 
 #include "io/atomic_file.hpp"
 #include "log/console.hpp"
 #include "process/child.hpp"
-#include "process/run_socket.hpp"
-#include "shm/memory_object.hpp"
 #include "study/plan.hpp"
 #include "study/run_result.hpp"
+#include "study/study_folder.hpp"
+#include "study/study_progress.hpp"
 #include "study/study_table.hpp"
 
 #include <mullion/sdk/error.hpp>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <fcntl.h>
 #include <filesystem>
 #include <set>
-#include <sys/file.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <thread>
@@ -40,68 +35,12 @@ using Clock = std::chrono::steady_clock;
 using study::RunResult;
 using study::StudyFile;
 
-constexpr std::size_t n_printed = 20;                            ///< rows of the table that a terminal shows
-constexpr auto patience_with_remains = std::chrono::seconds(10); ///< of a study that was killed: they die at once
+constexpr std::size_t n_printed = 20;                     ///< rows of the table that a terminal shows
 constexpr auto table_interval = std::chrono::seconds(10); ///< from one writing of the table to the next, on the way
 /// One Ctrl-C can arrive twice (from the terminal and from a wrapper such as timeout): that is one request.
 constexpr auto same_request = std::chrono::milliseconds(100);
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-// ---- the folder --------------------------------------------------------------------------------------------------
-
-/// The folder's lock, which children inherit.
-shm::Descriptor lock_folder(const fs::path& folder)
-{
-  const auto path = folder / "study.lock";
-  shm::Descriptor lock(::open(path.c_str(), O_RDWR | O_CREAT, 0666)); // not close-on-exec
-  MULLION_REQUIRE(lock.is_open(), Errc::io, "cannot open {}: {}", path.string(), std::strerror(errno));
-  const auto give_up = Clock::now() + patience_with_remains;
-  while (::flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {
-    const auto owner = io::read_text(path);
-    const pid_t pid = static_cast<pid_t>(std::strtol(owner.c_str(), nullptr, 10));
-    const bool is_alive = pid > 0 && (::kill(pid, 0) == 0 || errno != ESRCH);
-    MULLION_REQUIRE(!is_alive && Clock::now() < give_up, Errc::config,
-                    "a study is at work in {} (process {}); wait for it, or choose another folder with --out",
-                    folder.string(), pid);
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  const auto own = fmt::format("{}\n", ::getpid());
-  (void)!::ftruncate(lock.get(), 0);
-  (void)!::pwrite(lock.get(), own.data(), own.size(), 0);
-  return lock;
-}
-
-/// The folder is empty, or of this study.
-void check_folder(const fs::path& folder, const StudyFile& study)
-{
-  std::error_code none;
-  const auto file = folder / "study.toml";
-  MULLION_REQUIRE(!fs::exists(folder / "run.json", none), Errc::config,
-                  "{} is the folder of a run; choose another one for the study with --out", folder.string());
-  if (!fs::exists(file, none)) return;
-  const auto there = study::parse_study(io::read_text(file), study.file); // its paths count from there
-  const auto unreadable = there.diagnostics.sorted(file.string());
-  MULLION_REQUIRE(unreadable.empty(), Errc::config, "{} is no study that can be gone on with: {}: {}", folder.string(),
-                  unreadable.front().place, unreadable.front().message);
-  const auto differences = study::difference(there.value, study);
-  MULLION_REQUIRE(differences.empty(), Errc::config,
-                  "{} has the runs of another study; choose another folder with --out, or remove that one. They "
-                  "differ in{}",
-                  folder.string(), differences);
-}
-
-/// Names of live runs are unique per user: one of the same name would make ours fail.
-void check_names(const StudyFile& study)
-{
-  for (const auto& name : process::live_runs()) {
-    const auto begin = study.name + ".";
-    if (!name.starts_with(begin) || name.find_first_not_of("0123456789", begin.size()) != std::string::npos) continue;
-    throw Error(Errc::config, fmt::format("the run '{}' is alive, of another study of this name; wait for it, end it "
-                                          "with 'mullion stop {}', or give this study another name",
-                                          name, name));
-  }
-}
 
 // ---- signals -----------------------------------------------------------------------------------------------------
 
@@ -136,46 +75,6 @@ private:
   int was_subreaper_ = 0;
 };
 
-// ---- progress ----------------------------------------------------------------------------------------------------
-
-struct Counts {
-  std::size_t n_runs = 0, n_before = 0, n_done = 0, n_failed = 0, n_running = 0;
-};
-
-/// One line for the whole study: on a terminal ten times a second, elsewhere a log line every ten seconds.
-class Progress {
-public:
-  Progress() : interval_(log::is_terminal() ? std::chrono::milliseconds(100) : std::chrono::seconds(10)) {}
-
-  void show(const Counts& counts)
-  {
-    const auto now = Clock::now();
-    if (now < next_) return;
-    next_ = now + interval_;
-    const auto n_here = counts.n_done - counts.n_before, n_left = counts.n_runs - counts.n_done;
-    auto text = fmt::format("{}/{} runs, {} failed, {} under way, {} waiting", counts.n_done, counts.n_runs,
-                            counts.n_failed, counts.n_running, n_left - counts.n_running);
-    if (n_here > 0) {
-      const auto s =
-          static_cast<long>(seconds_since(begin_) / static_cast<double>(n_here) * static_cast<double>(n_left));
-      text += s < 3600 ? fmt::format(", {}:{:02} left", s / 60, s % 60)
-                       : fmt::format(", {}:{:02}:{:02} left", s / 3600, s / 60 % 60, s % 60);
-    }
-    if (!log::is_terminal()) {
-      log::info("study", "{}", text);
-      return;
-    }
-    constexpr std::size_t width = 24;
-    const auto filled = width * counts.n_done / counts.n_runs;
-    log::show_progress(fmt::format("[{}{}] {:3} % {}", std::string(filled, '#'), std::string(width - filled, '.'),
-                                   100 * counts.n_done / counts.n_runs, text));
-  }
-
-private:
-  Clock::duration interval_;
-  Clock::time_point begin_ = Clock::now(), next_ = begin_ + interval_;
-};
-
 // ---- the runs ----------------------------------------------------------------------------------------------------
 
 class Runner {
@@ -193,6 +92,8 @@ public:
   {
     for (std::size_t r = 0; r < results_.size(); ++r) {
       auto result = study::read_result(folder_of(r), plan_.runs[r].fingerprint, measuring_of(r));
+      std::error_code none;
+      if (!result && fs::exists(folder_of(r) / "done.json", none)) ++n_outdated_;
       if (!result || (has_retry && result->outcome != "completed")) {
         waiting_.push_back(r);
         continue;
@@ -210,7 +111,7 @@ public:
   std::string run(std::size_t n_parallel)
   {
     const SignalScope signals;
-    Progress progress;
+    study::Progress progress;
     while (!children_.empty() || (!waiting_.empty() && stopped_by_.empty())) {
       while (children_.size() < n_parallel && !waiting_.empty() && stopped_by_.empty()) start_next();
       counts_.n_running = children_.size();
@@ -233,7 +134,9 @@ public:
     io::write_atomically(folder_ / "study.csv", study::csv_text(study::make_table(study_, results_)));
   }
   [[nodiscard]] const std::vector<std::optional<RunResult>>& results() const { return results_; }
-  [[nodiscard]] const Counts& counts() const { return counts_; }
+  [[nodiscard]] const study::Counts& counts() const { return counts_; }
+  /// Runs that were finished, but with another case, program or plug-in, or whose files have changed.
+  [[nodiscard]] std::size_t n_outdated() const { return n_outdated_; }
 
 private:
   struct Child {
@@ -354,7 +257,8 @@ private:
   std::vector<std::optional<RunResult>> results_;
   std::vector<std::size_t> waiting_; ///< the next one at the back
   std::vector<Child> children_;
-  Counts counts_;
+  study::Counts counts_;
+  std::size_t n_outdated_ = 0;
   std::set<std::string> reported_; ///< problems of measures: the same in each run, as a rule
   std::string stopped_by_;
   Clock::time_point stopped_at_{}, next_table_ = Clock::now() + table_interval;
@@ -416,11 +320,11 @@ StudyOutcome run_study(const StudyOptions& options)
   if (!wrong.diagnostics.empty()) return wrong;
 
   const fs::path out = options.out.empty() ? fs::path("out") / study.name : fs::path(options.out);
-  check_folder(out, study); // before anything is made in it
+  study::check_folder(out, study); // before anything is made in it
   io::make_folder(out / "runs");
-  const auto lock = lock_folder(out);
-  check_folder(out, study); // another study may have been in it until now
-  check_names(study);
+  const auto lock = study::lock_folder(out);
+  study::check_folder(out, study); // another study may have been in it until now
+  study::check_names(study);
   io::remove_stale_temporaries(out);
   io::write_atomically(out / "study.toml", study.text);
 
@@ -433,6 +337,10 @@ StudyOutcome run_study(const StudyOptions& options)
   if (runner.counts().n_failed > 0)
     log::info("study", "{} of those done before failed or were stopped; --retry does them again",
               runner.counts().n_failed);
+  if (runner.n_outdated() > 0)
+    log::warning("study",
+                 "{} of the finished runs must be done again: the case, mullion, a plug-in or their files changed",
+                 runner.n_outdated());
   const auto stopped_by = runner.run(n_parallel);
   return finish_study(study, runner, out, stopped_by, seconds_since(begin));
 }

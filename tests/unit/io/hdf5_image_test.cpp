@@ -111,6 +111,24 @@ TEST_CASE("groups, extents, integers, raw bytes and texts come back")
   CHECK_FALSE(reader.has("/a/x/values"));
 }
 
+TEST_CASE("a list of texts comes back, empty ones and an empty list too")
+{
+  const std::vector<std::string> texts{"", "scheme A", "kg/m\u00b3"};
+  ImageBuilder image;
+  image.dataset("/texts", texts);
+  image.dataset("/empty", std::vector<std::string>{"", ""});
+  image.dataset("/none", std::vector<std::string>{});
+  const double number = 1.0;
+  image.dataset("/number", &number, {1});
+  const auto bytes = image.finish();
+  const ImageReader reader(bytes, "image");
+
+  CHECK(reader.texts("/texts") == texts);
+  CHECK(reader.texts("/empty") == std::vector<std::string>{"", ""});
+  CHECK(reader.texts("/none").empty());
+  CHECK_THROWS_WITH_AS((void)reader.texts("/number"), "image:/number does not hold a list of texts", Error);
+}
+
 TEST_CASE("what is not there, of another type or no HDF5 file is an error that names it")
 {
   const double one = 1.0;

@@ -1,9 +1,11 @@
 #include "study/study_file.hpp"
 
+#include "io/hdf5_image.hpp"
 #include "study/study_table.hpp"
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -107,6 +109,21 @@ TEST_CASE("a labelled point sets several keys, over those of [set], and measures
   CHECK(study.measures_of(1)[0].window == 2.0);
 }
 
+TEST_CASE("a reference is read from beside the study file, its times made seconds, by point where a point says so")
+{
+  const auto study = parse(
+      "[[vary]]\nname = \"p\"\npoints = [ { label = \"A\" }, { label = \"B\", measure = { time_scale = 0.5 } } ]\n"
+      "[[measure]]\nname = \"e\"\nkind = \"reference_error\"\nquantity = \"q\"\n"
+      "file = \"../cli/broken_studies/reference.csv\"\ntime_column = \"t\"\nvalue_column = \"pressure\"\n"
+      "time_scale = 2.0\nscale = 3.0\n");
+
+  CHECK(study.measures_of(0)[0].reference_times == std::vector{0.0, 2.0});
+  CHECK(study.measures_of(0)[0].reference_values == std::vector{1.0, 2.0});
+  CHECK(study.measures_of(1)[0].reference_times == std::vector{0.0, 0.5});
+  CHECK(study.measures_of(1)[0].scale == 3.0);
+  CHECK(definition_of(study.measures_of(0)[0]) != definition_of(study.measures_of(1)[0]));
+}
+
 TEST_CASE("studies are told apart by what their runs depend on, not by their measures")
 {
   const std::string vary = "[[vary]]\nkey = \"a.x\"\nvalues = [1, 2]\n";
@@ -139,6 +156,14 @@ TEST_CASE("the table has a row per finished run, in their order, and its texts a
   CHECK(csv_text(table) == "index,a.x,outcome,d,d.bound,message\n"
                            "0,0.1,completed,0.30000000000000004,,\n"
                            "2,3,failed,,,\"module 'a', \"\"b\"\"\"\n");
+  const auto image = hdf5_file(table);
+  const io::ImageReader file(image, "study.h5");
+  CHECK(file.f64("/a.x") == std::vector{0.1, 3.0});
+  CHECK(file.f64("/d")[0] == 0.1 + 0.2);
+  CHECK(std::isnan(file.f64("/d")[1]));
+  CHECK(file.texts("/outcome") == Texts{"completed", "failed"});
+  CHECK(file.text_attribute("/d", "kind") == "error_doubling");
+  CHECK(file.text_attribute("/d.bound", "unit") == "1/s");
   CHECK(printed(table, 1) == "index  a.x  outcome    d    d.bound\n"
                              "0      0.1  completed  0.3\n"
                              "… 1 more\n");
