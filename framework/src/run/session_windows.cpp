@@ -29,7 +29,6 @@ std::uint32_t Session::register_window(const std::string& name, shm::Owner owner
   objects_.push_back(std::move(object));
   shm::initialise_levels(control_, id, n_slots, case_.start_time, case_.dt);
   control_.n_windows = id + 1;
-  control_.directory_version.fetch_add(1, std::memory_order_release);
   log::debug("run", "window {}: {}, {} levels", name, shm::human_bytes(bytes), n_slots);
   return id;
 }
