@@ -144,15 +144,14 @@ void Session::await_host(Module& module)
   if (shm::wait_for(word, control_.orchestrator_asleep, may_spin, is_done, is_over)) return;
   if (is_late && !host.is_dead) {
     supervisor_.kill(host);
-    fail(module, Errc::process,
-         fmt::format("did not answer within its deadline of {} s (stopped, or in an endless loop?) and was killed; a "
-                     "longer one is run.{} in the case, none is --no-deadline",
-                     deadline, is_running_ ? "call_deadline" : "start_deadline"));
+    fail_by_end(module, fmt::format("did not answer within its deadline of {} s (stopped, or in an endless loop?) and "
+                                    "was killed; a longer one is run.{} in the case, none is --no-deadline",
+                                    deadline, is_running_ ? "call_deadline" : "start_deadline"));
   }
   std::string text = process::describe_end(host.wait_status);
   for (const auto& line : host.tail())
     if (line.rfind("a write into the read-only window", 0) == 0) text += " after " + line;
-  fail(module, Errc::process, text);
+  fail_by_end(module, text);
 }
 
 std::string Session::who(const Module& module) const
@@ -172,9 +171,12 @@ std::string Session::where(const Module& module) const
 
 void Session::fail(const Module& module, Errc code, const std::string& what) const
 {
-  const bool is_end = what.rfind("was killed", 0) == 0 || what.rfind("exited", 0) == 0 || what.rfind("did not", 0) == 0;
-  throw Error(code, is_end ? fmt::format("{} {}, {}", who(module), what, where(module))
-                           : fmt::format("{} failed {}: {}", who(module), where(module), what));
+  throw Error(code, fmt::format("{} failed {}: {}", who(module), where(module), what));
+}
+
+void Session::fail_by_end(const Module& module, const std::string& how) const
+{
+  throw Error(Errc::process, fmt::format("{} {}, {}", who(module), how, where(module)));
 }
 
 std::string Session::post_mortem() const

@@ -128,7 +128,9 @@ private:
   [[nodiscard]] const std::vector<std::uint32_t>& windows_written(const Module& module) const;
   void refuse_conflicts(std::uint32_t module) const;
   void await_host(Module& module);
-  void fail(const Module& module, Errc code, const std::string& what) const;
+  [[noreturn]] void fail(const Module& module, Errc code, const std::string& what) const;
+  /// Its process ended, by itself or by us. @param how "was killed by signal 9 (SIGKILL)"
+  [[noreturn]] void fail_by_end(const Module& module, const std::string& how) const;
   [[nodiscard]] std::string who(const Module& module) const;
   [[nodiscard]] std::string where(const Module& module) const;
 

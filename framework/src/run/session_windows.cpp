@@ -50,7 +50,7 @@ void Session::adopt_windows(std::uint32_t m)
         object = shm::adopt_object(module.host->pid, reply.windows[i].fd);
       } catch (const Error&) { // it died meanwhile, or it gave us nonsense: then this ends it
         supervisor_.kill(*module.host);
-        fail(module, Errc::process, process::describe_end(module.host->wait_status));
+        fail_by_end(module, process::describe_end(module.host->wait_status));
       }
       adopt(reply.windows[i].name, std::move(object), reply.windows[i].bytes, reply.windows[i].n_slots);
     }
