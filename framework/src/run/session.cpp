@@ -41,6 +41,7 @@ void Session::begin(std::uint32_t index, Operation operation, std::uint32_t func
   module.function = function;
   module.step = step;
   module.stamp = stamp;
+  if (!checks_.empty()) settle_before_writing(index);
   const bool is_step = operation == Operation::step;
 
   auto& request = control_.modules[index].request;
@@ -116,6 +117,7 @@ void Session::await(std::uint32_t index)
   }
   for (const auto w : windows_written(module))
     mark_written(w, {module.stamp, module.step.index, module.step.iteration, MULLION_INSTANT});
+  if (!module.large_fields.empty()) check_later(index);
   if (module.operation != Operation::step && module.operation != Operation::call) return;
   auto& timing = module.timings[module.operation == Operation::step ? 0 : 1 + module.function];
   ++timing.count;
@@ -195,6 +197,7 @@ std::string Session::post_mortem() const
 
 void Session::begin_attempt()
 {
+  if (!checks_.empty()) forget_checks();
   shm::roll_back(control_);
   write_order_.clear();
   for (auto& module : modules_) module.poisoned.clear();
@@ -208,8 +211,7 @@ void Session::begin_attempt()
 
 void Session::run_driver(const TimeStep& step)
 {
-  driver_->step(step);
-  for (std::uint32_t m = 0; m < modules_.size(); ++m) await(m); // what the driver forgot
+  run_and_settle([&] { driver_->step(step); });
   if (state_window_ != shm::no_window) mark_written(state_window_, {step.end, step.index, 0, MULLION_INSTANT});
 }
 
@@ -221,6 +223,7 @@ void Session::mark_written(std::uint32_t window, const mullion_stamp& stamp)
 
 void Session::commit(const TimeStep& step)
 {
+  MULLION_ASSERT(n_settled_ == checks_.size(), "{} of {} checks are settled", n_settled_, checks_.size());
   shm::commit(control_);
   control_.step = step.index;
   control_.time = step.end;
@@ -322,6 +325,8 @@ void Session::exchange(FieldAddress at)
   MULLION_REQUIRE(record.n_exchanged < shm::max_exchanged, Errc::config,
                   "more than {} fields of module '{}' are read by others", shm::max_exchanged, record.name);
   record.exchanged[record.n_exchanged++] = {at.window, at.field};
+  if (shm::is_checked_later(windows_.view(at.window).fields()[at.field]))
+    modules_[owner.module].large_fields.push_back(at);
 }
 
 } // namespace mullion::run

@@ -136,4 +136,10 @@ std::int64_t first_not_finite(const double* values, std::int64_t n)
   return n < prefetched ? first_not_finite_of<false>(values, n) : first_not_finite_of<true>(values, n);
 }
 
+std::string describe_not_finite(const char* window, const FieldRecord& field, const double* values, std::int64_t at)
+{
+  return fmt::format("{}.{}[{}, {}] = {} (component, entity): not a finite number", window, field.name,
+                     at % field.components, at / field.components, values[at]);
+}
+
 } // namespace mullion::shm
