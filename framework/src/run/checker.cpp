@@ -79,7 +79,7 @@ void Checker::work_on(Job& job)
     const auto k = job.n_chunks - 1 - job.n_taken.fetch_add(1);
     if (k < 0) return;
     const auto start = k * chunk;
-    const auto bad = shm::first_not_finite(job.values + start, std::min(chunk, job.n - start));
+    const auto bad = shm::first_not_finite(job.values + start, std::min(chunk, job.n - start), true);
     if (bad >= 0)
       for (auto first = job.first_bad.load(); start + bad < first;)
         if (job.first_bad.compare_exchange_weak(first, start + bad)) break;

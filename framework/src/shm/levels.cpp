@@ -124,7 +124,7 @@ template <bool is_beyond_caches> std::int64_t first_not_finite_of(const double* 
 
 } // namespace
 
-std::int64_t first_not_finite(const double* values, std::int64_t n)
+std::int64_t first_not_finite(const double* values, std::int64_t n, bool is_beyond_caches)
 {
   // This runs over every exchanged field in every step: one addition a value, in eight independent lanes, which the
   // compiler turns into vector additions without reordering any. Infinities and NaN survive in a sum; a sum that
@@ -132,8 +132,7 @@ std::int64_t first_not_finite(const double* values, std::int64_t n)
   //
   // The chunks are taken from the last to the first: what was written last is what the caches still hold, and the
   // reader, who comes next and starts at the front, finds the front there.
-  constexpr std::int64_t prefetched = 1 << 16; // 512 KiB: more than half of a usual second cache
-  return n < prefetched ? first_not_finite_of<false>(values, n) : first_not_finite_of<true>(values, n);
+  return is_beyond_caches ? first_not_finite_of<true>(values, n) : first_not_finite_of<false>(values, n);
 }
 
 std::string describe_not_finite(const char* window, const FieldRecord& field, const double* values, std::int64_t at)

@@ -37,7 +37,8 @@ std::optional<std::string> find_poison(const WindowView& window, const LevelEntr
 void seal(const WindowView& window, const LevelEntry& levels);
 
 /// Index of the first value that is not finite, or -1. One pass, vectorised.
-std::int64_t first_not_finite(const double* values, std::int64_t n);
+/// @param is_beyond_caches  prefetch: faster where the values come from memory, slower where a cache holds them
+std::int64_t first_not_finite(const double* values, std::int64_t n, bool is_beyond_caches = false);
 
 /// "structure/wet.velocity[1, 7] = nan (component, entity): not a finite number".
 std::string describe_not_finite(const char* window, const FieldRecord& field, const double* values, std::int64_t at);
