@@ -94,9 +94,9 @@ std::map<std::string, Layout> compiled()
                                           MEMBER(Control, step),         MEMBER(Control, n_steps),
                                           MEMBER(Control, time),         MEMBER(Control, current),
                                           MEMBER(Control, outcome_file), MEMBER(Control, orchestrator_asleep),
-                                          MEMBER(Control, epoch),        MEMBER(Control, directory_version),
-                                          MEMBER(Control, levels),       MEMBER(Control, working),
-                                          MEMBER(Control, windows),      MEMBER(Control, modules)}};
+                                          MEMBER(Control, epoch),        MEMBER(Control, levels),
+                                          MEMBER(Control, working),      MEMBER(Control, windows),
+                                          MEMBER(Control, modules)}};
   layouts["LevelEntry"] = {
       sizeof(LevelEntry),
       {MEMBER(LevelEntry, working_slot), MEMBER(LevelEntry, n_slots), MEMBER(LevelEntry, committed)}};

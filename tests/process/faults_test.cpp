@@ -42,7 +42,7 @@ constexpr const char* is_inline = "module 'structure' (faulty_structure, inline)
 TEST_CASE("an exception in a module, in a process or inline, ends the run with its text and the module's name")
 {
   for (const auto& [fault, text] :
-       std::map<std::string, std::string>{{"throw", "the fault that the test asked for"},
+       std::map<std::string, std::string>{{"throw", "did not want to go on"},
                                           {"throw_foreign", "threw something that is no std::exception"}})
     for (const auto& place : places)
       for (const bool is_process : {true, false}) {

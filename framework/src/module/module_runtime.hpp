@@ -1,6 +1,6 @@
 // A module at work in this process, be it a host or the orchestrator (inline): loads the plug-in, serves the C
 // boundary (windows, views, received fields), and surrounds each step with what the rules ask for: arming,
-// poisoning, the checks for unwritten and non-finite values.
+// poisoning, the checks for unwritten and non-finite values (but for large fields: those the session checks).
 //
 // Writes: the module's own windows. When this process dies, the windows live on in the orchestrator.
 #pragma once

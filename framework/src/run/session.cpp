@@ -45,6 +45,7 @@ void Session::begin(std::uint32_t index, Operation operation, std::uint32_t func
     module.step.begin = module.step.end = step.end + module.clock_offset;
     module.stamp = stamp + module.clock_offset;
   }
+  if (!checks_.empty()) settle_before_writing(index);
   const bool is_step = operation == Operation::step;
 
   auto& request = control_.modules[index].request;
@@ -120,6 +121,7 @@ void Session::await(std::uint32_t index)
   }
   for (const auto w : windows_written(module))
     mark_written(w, {module.stamp, module.step.index, module.step.iteration, MULLION_INSTANT});
+  if (!module.large_fields.empty()) check_later(index);
   if (module.operation != Operation::step && module.operation != Operation::call) return;
   auto& timing = module.timings[module.operation == Operation::step ? 0 : 1 + module.function];
   ++timing.count;
@@ -148,15 +150,14 @@ void Session::await_host(Module& module)
   if (shm::wait_for(word, control_.orchestrator_asleep, may_spin, is_done, is_over)) return;
   if (is_late && !host.is_dead) {
     supervisor_.kill(host);
-    fail(module, Errc::process,
-         fmt::format("did not answer within its deadline of {} s (stopped, or in an endless loop?) and was killed; a "
-                     "longer one is run.{} in the case, none is --no-deadline",
-                     deadline, is_running_ ? "call_deadline" : "start_deadline"));
+    fail_by_end(module, fmt::format("did not answer within its deadline of {} s (stopped, or in an endless loop?) and "
+                                    "was killed; a longer one is run.{} in the case, none is --no-deadline",
+                                    deadline, is_running_ ? "call_deadline" : "start_deadline"));
   }
   std::string text = process::describe_end(host.wait_status);
   for (const auto& line : host.tail())
     if (line.rfind("a write into the read-only window", 0) == 0) text += " after " + line;
-  fail(module, Errc::process, text);
+  fail_by_end(module, text);
 }
 
 std::string Session::who(const Module& module) const
@@ -176,9 +177,12 @@ std::string Session::where(const Module& module) const
 
 void Session::fail(const Module& module, Errc code, const std::string& what) const
 {
-  const bool is_end = what.rfind("was killed", 0) == 0 || what.rfind("exited", 0) == 0 || what.rfind("did not", 0) == 0;
-  throw Error(code, is_end ? fmt::format("{} {}, {}", who(module), what, where(module))
-                           : fmt::format("{} failed {}: {}", who(module), where(module), what));
+  throw Error(code, fmt::format("{} failed {}: {}", who(module), where(module), what));
+}
+
+void Session::fail_by_end(const Module& module, const std::string& how) const
+{
+  throw Error(Errc::process, fmt::format("{} {}, {}", who(module), how, where(module)));
 }
 
 std::string Session::post_mortem() const
@@ -197,6 +201,7 @@ std::string Session::post_mortem() const
 
 void Session::begin_attempt()
 {
+  if (!checks_.empty()) forget_checks();
   shm::roll_back(control_);
   write_order_.clear();
   for (auto& module : modules_) module.poisoned.clear();
@@ -210,8 +215,7 @@ void Session::begin_attempt()
 
 void Session::run_driver(const TimeStep& step)
 {
-  driver_->step(step);
-  for (std::uint32_t m = 0; m < modules_.size(); ++m) await(m); // what the driver forgot
+  run_and_settle([&] { driver_->step(step); });
   if (ledger_) count(*this, *ledger_, step);
   if (state_window_ != shm::no_window) mark_written(state_window_, {step.end, step.index, 0, MULLION_INSTANT});
 }
@@ -241,6 +245,7 @@ void Session::mark_written(std::uint32_t window, const mullion_stamp& stamp)
 
 void Session::commit(const TimeStep& step)
 {
+  MULLION_ASSERT(n_settled_ == checks_.size(), "{} of {} checks are settled", n_settled_, checks_.size());
   shm::commit(control_);
   control_.step = step.index;
   control_.time = step.end;
@@ -359,6 +364,8 @@ void Session::exchange(FieldAddress at)
   MULLION_REQUIRE(record.n_exchanged < shm::max_exchanged, Errc::config,
                   "more than {} fields of module '{}' are read by others", shm::max_exchanged, record.name);
   record.exchanged[record.n_exchanged++] = {at.window, at.field};
+  if (shm::is_checked_later(windows_.view(at.window).fields()[at.field]))
+    modules_[owner.module].large_fields.push_back(at);
 }
 
 } // namespace mullion::run

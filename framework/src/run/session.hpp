@@ -8,6 +8,7 @@
 #include "module/module_runtime.hpp"
 #include "plugin/catalogue.hpp"
 #include "process/supervisor.hpp"
+#include "run/checker.hpp"
 #include "run/field_address.hpp"
 #include "run/ledger.hpp"
 #include "run/timings.hpp"
@@ -18,6 +19,7 @@
 #include <mullion/coupling/driver.hpp>
 
 #include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -99,7 +101,8 @@ private:
     std::shared_ptr<process::Host> host;                      ///< in a process
     std::vector<std::uint32_t> windows;                       ///< its own
     std::vector<std::vector<std::uint32_t>> function_windows; ///< per function
-    std::uint32_t conflicts = 0; ///< modules that read its windows, or whose windows it reads, in place
+    std::uint32_t conflicts = 0;            ///< modules that read its windows, or whose windows it reads, in place
+    std::vector<FieldAddress> large_fields; ///< exchanged, and left to us by its runtime to check
     bool in_flight = false;
     shm::Operation operation = shm::Operation::none;
     std::uint32_t function = 0;
@@ -112,6 +115,13 @@ private:
     std::int64_t inline_work_ns = 0;
     std::vector<CallTiming> timings;  ///< step, then the functions in their order
     std::set<std::uint32_t> poisoned; ///< windows, in this attempt
+  };
+
+  /// A large field whose check for finite values is under way, in the order of writing.
+  struct Check {
+    std::uint32_t module;
+    FieldAddress field;
+    std::string call; ///< "module 'fluid' (…) failed in step, step 7, t = 0.1 s": the module may be called meanwhile
   };
 
   // setup.cpp
@@ -136,9 +146,20 @@ private:
   [[nodiscard]] const std::vector<std::uint32_t>& windows_written(const Module& module) const;
   void refuse_conflicts(std::uint32_t module) const;
   void await_host(Module& module);
-  void fail(const Module& module, Errc code, const std::string& what) const;
+  [[noreturn]] void fail(const Module& module, Errc code, const std::string& what) const;
+  /// Its process ended, by itself or by us. @param how "was killed by signal 9 (SIGKILL)"
+  [[noreturn]] void fail_by_end(const Module& module, const std::string& how) const;
   [[nodiscard]] std::string who(const Module& module) const;
   [[nodiscard]] std::string where(const Module& module) const;
+
+  // session_checks.cpp
+  void check_later(std::uint32_t module); ///< what its runtime left of its last call
+  /// Wait for the first checks of this attempt. @throws Error the first value, in write order, that is not finite
+  void settle(std::size_t n_checks);
+  /// Have the driver do its part, await what it forgot, settle all checks; none is left when it failed, either.
+  void run_and_settle(const std::function<void()>& drive);
+  void settle_before_writing(std::uint32_t module);
+  void forget_checks();
 
   const Case& case_;
   plugin::Catalogue& catalogue_;
@@ -154,6 +175,9 @@ private:
   std::optional<Ledger> ledger_;
   std::vector<std::uint32_t> write_order_;
   std::uint32_t n_in_flight_ = 0;
+  std::vector<Check> checks_; ///< of this attempt
+  std::size_t n_settled_ = 0;
+  Checker checker_; ///< after windows_, into which it looks
   bool is_running_ = false; ///< steps, rather than the start-up, whose deadline is longer
 };
 

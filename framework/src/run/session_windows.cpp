@@ -30,7 +30,6 @@ std::uint32_t Session::register_window(const std::string& name, shm::Owner owner
   const double offset = module == shm::no_module ? 0.0 : modules_[module].clock_offset;
   shm::initialise_levels(control_, id, n_slots, case_.start_time + offset, case_.dt);
   control_.n_windows = id + 1;
-  control_.directory_version.fetch_add(1, std::memory_order_release);
   log::debug("run", "window {}: {}, {} levels", name, shm::human_bytes(bytes), n_slots);
   return id;
 }
@@ -52,7 +51,7 @@ void Session::adopt_windows(std::uint32_t m)
         object = shm::adopt_object(module.host->pid, reply.windows[i].fd);
       } catch (const Error&) { // it died meanwhile, or it gave us nonsense: then this ends it
         supervisor_.kill(*module.host);
-        fail(module, Errc::process, process::describe_end(module.host->wait_status));
+        fail_by_end(module, process::describe_end(module.host->wait_status));
       }
       adopt(reply.windows[i].name, std::move(object), reply.windows[i].bytes, reply.windows[i].n_slots);
     }

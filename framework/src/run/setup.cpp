@@ -59,8 +59,7 @@ void Session::start_fresh()
 
   shm::roll_back(control_);
   if (state_window_ != shm::no_window) control_.working[state_window_].is_written = 1;
-  driver_->start(initial);
-  for (std::uint32_t m = 0; m < modules_.size(); ++m) await(m);
+  run_and_settle([&] { driver_->start(initial); });
   call_all(Operation::seal, initial);
   const auto& table = control_.table(control_.epoch.load());
   for (std::uint32_t w = 0; w < control_.n_windows; ++w)

@@ -147,7 +147,6 @@ struct Control {
   char outcome_file[1024]; ///< run.json, which the guard completes if the orchestrator dies
   alignas(64) Word orchestrator_asleep;
   alignas(64) std::atomic<std::uint64_t> epoch; ///< commits so far; its lowest bit names the valid table
-  std::atomic<std::uint32_t> directory_version; ///< changes whenever a window record does
   LevelTable levels[2];
   WorkingLevel working[max_windows];
   WindowRecord windows[max_windows];

@@ -37,6 +37,18 @@ std::optional<std::string> find_poison(const WindowView& window, const LevelEntr
 void seal(const WindowView& window, const LevelEntry& levels);
 
 /// Index of the first value that is not finite, or -1. One pass, vectorised.
-std::int64_t first_not_finite(const double* values, std::int64_t n);
+/// @param is_beyond_caches  prefetch: faster where the values come from memory, slower where a cache holds them
+std::int64_t first_not_finite(const double* values, std::int64_t n, bool is_beyond_caches = false);
+
+/// "structure/wet.velocity[1, 7] = nan (component, entity): not a finite number".
+std::string describe_not_finite(const char* window, const FieldRecord& field, const double* values, std::int64_t at);
+
+/// Fields from this size on are checked beside the run (run/checker.hpp), smaller ones at once after the call: there
+/// the values still lie in the caches, and a look at them costs less than handing them over.
+inline constexpr std::uint64_t large_field_bytes = 4 << 20;
+inline bool is_checked_later(const FieldRecord& field)
+{
+  return field.scalar == MULLION_F64 && field_bytes(field) >= large_field_bytes;
+}
 
 } // namespace mullion::shm

@@ -22,7 +22,7 @@
 namespace mullion::shm {
 
 inline constexpr std::uint64_t window_magic = 0x31574e4f494c4c4d; // "MLLIONW1"
-inline constexpr std::uint32_t layout_version = 1;
+inline constexpr std::uint32_t layout_version = 2;
 inline constexpr std::uint64_t page = 4096;
 inline constexpr std::uint64_t alignment = 64;
 inline constexpr std::uint32_t no_window = 0xffffffff;

@@ -1,5 +1,5 @@
-// A driver that tries every kind of call: both solvers at the same time over stored fields, and each misuse that the
-// framework must refuse with a clear message.
+// A driver that tries every kind of call: both solvers at the same time over stored fields, once a step or in
+// iterations, and each misuse that the framework must refuse with a clear message.
 #include <mullion/coupling/driver.hpp>
 
 namespace mullion::test {
@@ -8,14 +8,16 @@ class CallsDriver final : public Driver {
 public:
   struct Options {
     std::string what = "parallel";
+    int iterations = 1;
     static constexpr auto table()
     {
       return std::tuple{parameter("what", &Options::what, "", "what to try",
-                                  one_of("parallel", "parallel_in_place", "twice", "unknown_function", "wrong_signature",
-                                         "no_put", "not_finite", "query"))};
+                                  one_of("parallel", "parallel_in_place", "twice", "unknown_function",
+                                         "wrong_signature", "no_put", "not_finite", "query")),
+                        parameter("iterations", &Options::iterations, "1", "how often each step is done", at_least(1))};
     }
   };
-  explicit CallsDriver(const Options& options) : what_(options.what) {}
+  explicit CallsDriver(const Options& options) : what_(options.what), iterations_(options.iterations) {}
 
   void define(Wiring& wiring) override
   {
@@ -58,6 +60,12 @@ public:
 
   void step(const TimeStep& step) override
   {
+    for (TimeStep k = step; k.iteration < iterations_; ++k.iteration) iterate(k);
+  }
+
+private:
+  void iterate(const TimeStep& step)
+  {
     if (what_ == "not_finite") received_velocity_.put(std::nan("") * velocity_.committed(), step.end);
     if (what_ == "query") {
       const double answer = scaled_(step, 21.0);
@@ -75,8 +83,8 @@ public:
     structure_.await();
   }
 
-private:
   std::string what_, wall_, wet_, fluid_name_, structure_name_;
+  int iterations_;
   ModuleProxy fluid_, structure_;
   Query scaled_;
   ModuleField velocity_, traction_;

@@ -88,7 +88,7 @@ void FaultyStructure::misbehave(const std::string& call, std::int64_t step)
   if (call != options_.at || (call == "step" && step != options_.at_step)) return;
   const auto& fault = options_.fault;
   if (fault == "none" || fault == "unwritten" || fault == "huge") return; // elsewhere, if at all
-  if (fault == "throw") throw std::runtime_error("the fault that the test asked for");
+  if (fault == "throw") throw std::runtime_error("did not want to go on");
   if (fault == "throw_foreign") return throw_foreign();
   if (fault == "segfault") return segfault();
   if (fault == "abort") std::abort();

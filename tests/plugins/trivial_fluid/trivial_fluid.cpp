@@ -1,5 +1,10 @@
 #include "trivial_fluid.hpp"
 
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <stdexcept>
+
 namespace mullion::test {
 namespace {
 
@@ -32,11 +37,16 @@ void TrivialFluid::attach()
   velocity_ = input("wall", "velocity");
 }
 
-void TrivialFluid::step(const TimeStep&)
+void TrivialFluid::step(const TimeStep& step)
 {
   const auto velocity = flat(velocity_.newest());
   const auto traction = flat(traction_.now());
-  for (std::size_t k = 0; k < traction.size(); ++k) traction[k] = 0.5 * velocity[k] + offset(k);
+  for (std::size_t k = 0; k < traction.size(); ++k) {
+    if (options_.on_nan == "throw" && std::isnan(velocity[k])) throw std::runtime_error("cannot go on with a NaN");
+    if (options_.on_nan == "abort" && std::isnan(velocity[k])) std::abort();
+    traction[k] = 0.5 * velocity[k] + offset(k);
+  }
+  if (step.index == options_.not_finite_in) traction.back() = std::numeric_limits<double>::quiet_NaN();
 }
 
 } // namespace mullion::test

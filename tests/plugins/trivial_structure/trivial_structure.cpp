@@ -1,5 +1,7 @@
 #include "trivial_structure.hpp"
 
+#include <limits>
+
 namespace mullion::test {
 namespace {
 
@@ -32,11 +34,13 @@ void TrivialStructure::attach()
   traction_ = input("wet", "traction");
 }
 
-void TrivialStructure::step(const TimeStep&)
+void TrivialStructure::step(const TimeStep& step)
 {
   const auto traction = flat(traction_.newest());
   const auto velocity = flat(velocity_.now());
   for (std::size_t k = 0; k < velocity.size(); ++k) velocity[k] = 0.5 * traction[k] + offset(k);
+  if (step.index == options_.not_finite_in && step.iteration == 0)
+    velocity.back() = std::numeric_limits<double>::quiet_NaN();
 }
 
 } // namespace mullion::test

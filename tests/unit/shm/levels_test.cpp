@@ -163,3 +163,16 @@ TEST_CASE("a value that is not finite is found wherever it stands")
       CHECK(first_not_finite(values.data(), 1300) == at);
     }
 }
+
+TEST_CASE("the same with many chunks, prefetched or not, of several values the first")
+{
+  constexpr std::int64_t n = 70'001;
+  for (const bool is_beyond_caches : {false, true}) {
+    std::vector<double> values(n, 1.0);
+    CHECK(first_not_finite(values.data(), n, is_beyond_caches) == -1);
+    for (const std::int64_t at : {70'000, 65'536, 65'535, 8192, 8191, 0}) {
+      values[static_cast<std::size_t>(at)] = std::numeric_limits<double>::quiet_NaN();
+      CHECK(first_not_finite(values.data(), n, is_beyond_caches) == at);
+    }
+  }
+}
