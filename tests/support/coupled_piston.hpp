@@ -15,14 +15,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace mullion::testing {
 
-enum class Profile {
-  constant,
-  linear
-}; // wall velocity within a step: v_end all along, or a ramp from v_begin
-enum class Offset { none, half }; // where the gas starts: at t = 0 or at -dt/2
+enum class Profile { constant, linear }; // wall velocity within a step: v_end all along, or a ramp from v_begin
+enum class Offset { none, half };        // where the gas starts: at t = 0 or at -dt/2
+
+// Combined interface boundary conditions: the weight as it stands in either correction, so that a test can turn each
+// sign round; the scheme has the same positive weight in both.
+struct CibcWeights {
+  double velocity = 0.0; // omega in rho_f dv/dt = -dp/dn + omega (P_t - P_s,t) [s/m]
+  double traction = 0.0; // omega in P_s,t = P_t - (dp/dn + rho_f a_s) / omega [s/m]
+};
 
 // A piston that starts in its first closed mode, and one step of several schemes. Load step zero:
 // p_ref = p_0.
@@ -31,17 +36,18 @@ public:
   static constexpr double amplitude = 1e-6; // [m]: relative nonlinearity 1e-6
 
   CoupledPiston(const Piston& piston, std::size_t n_cells, double dt, Offset offset = Offset::none)
-      : piston_(piston), dt_(dt), omega_(closed_frequencies(piston, 1)[0]),
-        bar_{.density = piston.solid_density(),
-             .youngs_modulus = piston.youngs_modulus(),
-             .length = piston.solid_length(),
-             .n_elements = static_cast<std::size_t>(
-                 std::max(1.0, std::round(piston.solid_length() * static_cast<double>(n_cells))))},
+      : piston_(piston), dt_(dt),
+        omega_(closed_frequencies(piston, 1)[0]), bar_{.density = piston.solid_density(),
+                                                       .youngs_modulus = piston.youngs_modulus(),
+                                                       .length = piston.solid_length(),
+                                                       .n_elements = static_cast<std::size_t>(
+                                                           std::max(1.0, std::round(piston.solid_length() *
+                                                                                    static_cast<double>(n_cells))))},
         gas_(n_cells), solid_(bar_), newmark_(bar_, dt)
   {
-    euler_1d::set_acoustic_mode(
-        gas_.state(), options_.gas, options_.reference, {amplitude, omega_, piston.fluid_length},
-        offset == Offset::half ? -0.5 * dt : 0.0, piston.fluid_length + amplitude);
+    euler_1d::set_acoustic_mode(gas_.state(), options_.gas, options_.reference,
+                                {amplitude, omega_, piston.fluid_length}, offset == Offset::half ? -0.5 * dt : 0.0,
+                                piston.fluid_length + amplitude);
     applied_ = wall(0.0);
     elastic_bar::set_mode(bar_, solid_.view(), amplitude, omega_, load(applied_));
     old_acceleration_ = a();
@@ -94,6 +100,58 @@ public:
     elastic_bar::central_difference_velocity(bar_, solid_.view(), dt_, load(wall(predicted)));
   }
 
+  // Algorithm 3 of Jaiman et al. 2011, the consistent reading: the velocity's increment on v^n, the traction's with the
+  // fluid's own new rate; linear profile.
+  void cibc(CibcWeights omega)
+  {
+    start_cibc();
+    const double v_begin = v();
+    newmark_.step(solid_.view(), cibc_.applied);
+    const double v_f = v_begin + velocity_increment(omega.velocity);
+    move_gas(gas_velocity_, v_f, Profile::linear);
+    gas_velocity_ = v_f;
+    const Wall now = wall_values(v_f);
+    const double rate = (now.traction - cibc_.now.traction) / dt_;
+    end_cibc(now, now.traction + dt_ * (rate - residual(now) / omega.traction));
+  }
+
+  void cibc_printed(CibcWeights omega) // taken literally: on v^{n+1}, with the rate of the old loads; constant profile
+  {
+    start_cibc();
+    newmark_.step(solid_.view(), cibc_.applied);
+    const double v_f = v() + velocity_increment(omega.velocity);
+    const double rate = (cibc_.applied - cibc_.applied_before) / dt_;
+    move_gas(v_f, v_f, Profile::constant);
+    const Wall now = wall_values(v_f);
+    end_cibc(now, now.traction + dt_ * (rate - residual(now) / omega.traction));
+  }
+
+  void cibc_half_offset(CibcWeights omega) // ISS plus the traction's correction
+  {
+    move_gas(v(), v(), Profile::constant);
+    const Wall now = wall_values(v() + 0.5 * dt_ * a());
+    newmark_.step_mean(solid_.view(), now.traction - dt_ / omega.traction * residual(now));
+  }
+
+  void cibc_sub_iterated(CibcWeights omega, int n_sub_iterations) // the bar again, with the corrected traction
+  {
+    start_cibc();
+    const GasColumn gas_begin = gas_;
+    const BarMotion solid_begin = solid_;
+    double traction = cibc_.applied;
+    Wall now{};
+    for (int k = 0; k <= n_sub_iterations; ++k) {
+      gas_ = gas_begin;
+      solid_ = solid_begin;
+      newmark_.step(solid_.view(), traction);
+      move_gas(gas_velocity_, v(), Profile::linear);
+      now = wall_values(v());
+      traction = now.traction - dt_ / omega.traction * residual(now);
+    }
+    gas_velocity_ = v();
+    end_cibc(now, traction + (now.traction - cibc_.now.traction));
+  }
+
   void strong() // fixed point on the velocity at the end of the step, linear profile
   {
     const GasColumn gas_begin = gas_;
@@ -114,6 +172,41 @@ public:
   }
 
 private:
+  struct Wall {
+    double traction = 0.0; // P - p_ref [Pa]
+    double gradient = 0.0; // dp/dn [Pa/m]
+  };
+  // What the collocated CIBC schemes remember: the wall at t^n and t^{n-1}, the loads applied until then.
+  struct CibcHistory {
+    bool has_started = false;
+    Wall now, before;
+    double applied = 0.0, applied_before = 0.0; // P_s^n, P_s^{n-1}, minus p_ref
+  };
+
+  Wall wall_values(double w)
+  {
+    const auto wall = euler_1d::wall_state(gas_.state(), options_.gas, w);
+    return {load(wall.pressure), wall.pressure_gradient};
+  }
+  void start_cibc() // all rates zero
+  {
+    if (cibc_.has_started) return;
+    const Wall now = wall_values(0.0);
+    cibc_ = {true, now, now, now.traction, now.traction};
+  }
+  void end_cibc(const Wall& now, double applied)
+  {
+    cibc_.before = std::exchange(cibc_.now, now);
+    cibc_.applied_before = std::exchange(cibc_.applied, applied);
+  }
+  double velocity_increment(double omega) const
+  {
+    const double fluid_rate = (cibc_.now.traction - cibc_.before.traction) / dt_;
+    const double applied_rate = (cibc_.applied - cibc_.applied_before) / dt_;
+    return dt_ / piston_.rho0 * (-cibc_.now.gradient + omega * (fluid_rate - applied_rate));
+  }
+  double residual(const Wall& wall) const { return wall.gradient + piston_.rho0 * a(); } // r [Pa/m]
+
   double wall(double w) { return euler_1d::wall_state(gas_.state(), options_.gas, w).pressure; }
   // F = A (P_s - p_ref), A = 1 m^2
   double load(double pressure) const { return pressure - piston_.p0; }
@@ -133,6 +226,7 @@ private:
   double applied_ = 0.0;          // P_s^n
   double gas_velocity_ = 0.0;     // v_f^n
   double old_acceleration_ = 0.0; // a^{n-1}
+  CibcHistory cibc_;
 };
 
 } // namespace mullion::testing

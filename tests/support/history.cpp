@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace mullion::test {
 
@@ -14,17 +15,19 @@ History read_history(const std::filesystem::path& file)
   if (!std::getline(in, line)) throw std::runtime_error("no history in " + file.string());
   std::vector<std::string> names;
   for (std::istringstream header(line); std::getline(header, cell, ',');) names.push_back(cell);
-  History history;
+  std::vector<std::vector<double>> columns(names.size());
   while (std::getline(in, line)) {
-    std::size_t column = 0;
-    for (std::istringstream row(line); std::getline(row, cell, ','); ++column) {
+    const char* at = line.c_str();
+    for (std::size_t column = 0; column < names.size(); ++column) {
       char* end = nullptr;
-      const double value = std::strtod(cell.c_str(), &end);
-      if (column >= names.size() || *end != '\0') throw std::runtime_error("bad line in " + file.string() + ": " + line);
-      history[names[column]].push_back(value);
+      columns[column].push_back(std::strtod(at, &end));
+      const char expected = column + 1 < names.size() ? ',' : '\0';
+      if (end == at || *end != expected) throw std::runtime_error("bad line in " + file.string() + ": " + line);
+      at = end + 1;
     }
-    if (column != names.size()) throw std::runtime_error("short line in " + file.string() + ": " + line);
   }
+  History history;
+  for (std::size_t column = 0; column < names.size(); ++column) history[names[column]] = std::move(columns[column]);
   return history;
 }
 
