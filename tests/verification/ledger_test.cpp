@@ -65,7 +65,7 @@ TEST_CASE("work_structure is the change of the structure's energy in each step, 
 
     double largest = 0.0;
     for (std::size_t i = 1; i < energy.size(); ++i)
-      largest = worst(largest, std::abs(energy[i] - energy[i - 1] - work[i]));
+      largest = worst(largest, std::abs(energy[i] - energy[i - 1] - (work[i] - work[i - 1])));
 
     // Newmark's average acceleration keeps this balance exactly; the energy is a sum of tens of terms.
     CHECK(largest < 1e-13 * largest_magnitude(energy));
