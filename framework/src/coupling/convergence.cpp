@@ -31,7 +31,7 @@ void Convergence::compare(std::size_t field, int iteration, const ConstArray& no
   if (is_finite && !has_grown) return;
   Eigen::Index component = 0, entity = 0;
   double largest = -1.0;
-  for (Eigen::Index j = 0; j < now.cols(); ++j)
+  for (Eigen::Index j = 0; j < now.cols() && std::isfinite(largest); ++j)
     for (Eigen::Index i = 0; i < now.rows(); ++i) {
       const double moved = std::abs(now(i, j) - before(i, j));
       if (moved <= largest) continue; // NaN compares false: it is taken
