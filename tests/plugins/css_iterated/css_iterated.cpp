@@ -13,7 +13,9 @@ public:
 
   void define(Wiring& wiring) override
   {
-    names_ = wire_fsi(wiring, TimePolicy::linear);
+    FsiOptions options;
+    options.profile = "linear";
+    names_ = wire_fsi(wiring, options);
     wiring.state_like("load", names_.wet + ".traction");
   }
   void attach(Coupling& coupling) override
@@ -32,13 +34,8 @@ public:
     for (int k = 0; k < 3; ++k) {
       TimeStep iteration = step;
       iteration.iteration = k;
-      roles_.structure_load.put(wrong[k] * load_.committed(), step.end);
-      roles_.structure.step(iteration);
-      roles_.transfer_motion(iteration);
-      roles_.wall_velocity.put(wrong[k] * roles_.motion_on_fluid.now(), step.end);
-      roles_.mesh_motion.step(iteration);
-      roles_.fluid.step(iteration);
-      roles_.transfer_loads(iteration);
+      roles_.load_structure(wrong[k] * load_.committed(), iteration);
+      roles_.move_fluid(wrong[k] * roles_.structure_motion.now(), iteration);
     }
     load_.now() = roles_.load_on_structure.now();
   }
