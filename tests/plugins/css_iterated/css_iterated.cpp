@@ -34,8 +34,12 @@ public:
     for (int k = 0; k < 3; ++k) {
       TimeStep iteration = step;
       iteration.iteration = k;
-      roles_.load_structure(wrong[k] * load_.committed(), iteration);
-      roles_.move_fluid(wrong[k] * roles_.structure_motion.now(), iteration);
+      roles_.structure_load.put(wrong[k] * load_.committed(), step.end);
+      roles_.structure.step(iteration);
+      roles_.send_motion(wrong[k] * roles_.structure_motion.now(), iteration);
+      roles_.mesh_motion.step(iteration);
+      roles_.fluid.step(iteration);
+      roles_.transfer_loads(iteration);
     }
     load_.now() = roles_.load_on_structure.now();
   }
