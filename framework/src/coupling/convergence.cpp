@@ -1,5 +1,7 @@
 #include <mullion/coupling/convergence.hpp>
 
+#include <mullion/sdk/error.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +16,7 @@ void Convergence::begin_step()
   for (auto& field : fields_) field = {};
 }
 
-void Convergence::compare(std::size_t field, int iteration, const ConstArray& now, const ConstArray& before)
+void Convergence::compare(std::size_t field, int iteration, const Values& now, const Values& before)
 {
   auto& last = fields_[field];
   const auto& tolerance = tolerances_[field];

@@ -2,6 +2,7 @@
 #include <mullion/coupling/convergence.hpp>
 
 #include <mullion/sdk/error.hpp>
+#include <mullion/sdk/window.hpp>
 
 #include <doctest/doctest.h>
 
