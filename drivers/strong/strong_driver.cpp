@@ -157,15 +157,11 @@ private:
 
   bool has_converged(const Vector& x, int k)
   {
-    const Eigen::MatrixXd motion = motion_of(x);
-    const auto as_array = [](const Eigen::MatrixXd& values) {
-      return ConstArray(values.data(), values.rows(), values.cols());
-    };
-    convergence_.compare(0, k, roles_.structure_motion.now(), as_array(motion));
+    convergence_.compare(0, k, roles_.structure_motion.now(), motion_of(x));
     // Serial: the traction of this evaluation against that of the one before. Parallel: against the one that the
     // structure got; two evaluations in a row may agree on a traction that it never felt.
     if (is_parallel_) load_before_ = load_of(x);
-    convergence_.compare(1, k, roles_.load_on_structure.now(), as_array(load_before_));
+    convergence_.compare(1, k, roles_.load_on_structure.now(), load_before_);
     load_before_ = roles_.load_on_structure.now();
     return convergence_.is_reached();
   }

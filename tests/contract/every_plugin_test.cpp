@@ -23,15 +23,65 @@ struct PluginCase {
 };
 
 const std::string piston_steps = "run.end_time=2.4377976008801763e-4"; // 40 steps
+const std::string piston = "configs/closed_piston.toml";
+
+/// The piston for 40 steps with a driver and its options.
+PluginCase driven(const std::string& scheme, std::vector<std::string> options)
+{
+  std::vector<std::string> sets = {piston_steps, "output.every=10", "fluid.cells=20", "structure.elements=10",
+                                   "driver.scheme=" + scheme};
+  for (auto& option : options)
+    sets.push_back(option.find('.') < option.find('=') ? option : "driver." + option); // another table's, with its name
+  return {piston, sets};
+}
+/// The last of its 40 steps is a shorter one: 0.38 dt.
+PluginCase shortened(PluginCase c)
+{
+  c.sets.front() = "run.end_time=2.4e-4";
+  return c;
+}
+/// It starts in a mode, so the fluid knows its state half a step before the start, too.
+PluginCase in_a_mode(PluginCase c)
+{
+  for (const char* set : {"fluid.initial=mode", "structure.initial=mode", "fluid.mode_angular_frequency=258.55",
+                          "structure.mode_angular_frequency=258.55", "coupling.reference_pressure=1e5"})
+    c.sets.emplace_back(set);
+  return c;
+}
+
+const std::string gas = "fluid_density=1.3", sound = "sound_speed=328.165"; // what cibc must be told
 const std::vector<PluginCase> cases = {
-    {"configs/closed_piston.toml", {piston_steps, "output.every=10", "fluid.cells=20"}},
-    {"configs/closed_piston.toml",
+    {piston, {piston_steps, "output.every=10", "fluid.cells=20"}},
+    {piston,
      {piston_steps, "output.every=10", "fluid.cells=20", "fluid.limiter=van_albada", "fluid.substeps=3",
       "structure.integrator=central_difference", "structure.substeps=2", "driver.alpha=0.25", "driver.beta=0.5",
       "driver.profile=linear"}},
-    {"configs/closed_piston.toml",
+    {piston,
      {"run.end_time=2.4e-4", "output.every=15", "fluid.cells=20", "fluid.left_end=open", "fluid.substeps=2",
       "structure.far_end=free", "driver.order=fluid_first", "driver.beta=0.25"}}, // the last step is a shorter one
+    driven("css", {"sampling=mean", "load_time=mean", "fluid.substeps=3", "structure.substeps=2"}),
+    shortened(driven("css_parallel", {"profile=linear", "sampling=mean", "load_interpolation=constant",
+                                      "fluid.substeps=2", "structure.substeps=3"})),
+    shortened(driven("gss", {})),
+    driven("gss", {"load=recursion", "beta=0.5", "profile=constant", "a0=1.0", "a1=0.0", "structure.substeps=2",
+                   "load_interpolation=constant"}),
+    shortened(driven("iss", {"fluid.substeps=2"})),
+    in_a_mode(driven("iss", {"starts_early=true", "sampling=mean", "w_end=false"})),
+    shortened(driven("explicit_lagfree", {"structure.integrator=central_difference"})),
+    shortened(driven("cibc", {gas, sound, "kappa=0.3", "fluid.substeps=2", "structure.substeps=2"})),
+    driven("cibc", {gas, "reading=printed", "omega=2e-4"}),
+    driven("cibc", {gas, sound, "sub_iterations=2", "load_interpolation=constant", "structure.substeps=2"}),
+    shortened(driven("cibc", {gas, sound, "half_offset=true", "w_end=false"})),
+    in_a_mode(driven("cibc", {gas, "half_offset=true", "starts_early=true", "h=0.001", "reference_velocity=1.0"})),
+    shortened(driven("strong", {"sampling=mean", "fluid.substeps=3", "structure.substeps=2"})),
+    driven("strong", {"acceleration=aitken", "predictor=quadratic", "profile=constant"}),
+    driven("strong", {"acceleration=constant", "relaxation=0.9", "predictor=constant"}),
+    shortened(driven("strong", {"acceleration=iqn_mvj"})),
+    shortened(driven("strong", {"iteration=parallel", "reuse=2", "max_columns=5"})),
+    driven("strong",
+           {"iteration=parallel", "acceleration=iqn_mvj", "structure.substeps=2", "load_interpolation=constant"}),
+    {"tests/verification/added_mass.toml",
+     {"run.end_time=4.0e-3", "output.every=10", "driver.reuse=3", "structure.density=75.0"}}, // without a mesh to move
 };
 
 test::CaseRun to_run(const PluginCase& c, const std::vector<std::string>& flags, const std::string& out)

@@ -1,5 +1,7 @@
 #include <mullion/coupling/convergence.hpp>
 
+#include <mullion/sdk/error.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +16,7 @@ void Convergence::begin_step()
   for (auto& field : fields_) field = {};
 }
 
-void Convergence::compare(std::size_t field, int iteration, const ConstArray& now, const ConstArray& before)
+void Convergence::compare(std::size_t field, int iteration, const Values& now, const Values& before)
 {
   auto& last = fields_[field];
   const auto& tolerance = tolerances_[field];
@@ -26,12 +28,13 @@ void Convergence::compare(std::size_t field, int iteration, const ConstArray& no
     last.has_first = true;
   }
   last.has_passed = is_finite && last.change <= tolerance.absolute + tolerance.relative * last.size;
-  const bool has_grown = last.change > largest_growth * std::max(last.first_change, tolerance.absolute) &&
-                         last.first_change > 0.0 && !last.has_passed;
+  // A first guess may hit a field to round-off: then what is allowed is the smallest change that counts.
+  const double allowed = tolerance.absolute + tolerance.relative * last.size;
+  const bool has_grown = !last.has_passed && last.change > largest_growth * std::max(last.first_change, allowed);
   if (is_finite && !has_grown) return;
   Eigen::Index component = 0, entity = 0;
   double largest = -1.0;
-  for (Eigen::Index j = 0; j < now.cols(); ++j)
+  for (Eigen::Index j = 0; j < now.cols() && std::isfinite(largest); ++j)
     for (Eigen::Index i = 0; i < now.rows(); ++i) {
       const double moved = std::abs(now(i, j) - before(i, j));
       if (moved <= largest) continue; // NaN compares false: it is taken

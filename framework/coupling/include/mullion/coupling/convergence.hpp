@@ -7,7 +7,7 @@
 // so infinity never passes for convergence, and a field at rest (0 against 0) passes by its absolute part.
 #pragma once
 
-#include <mullion/sdk/window.hpp>
+#include <Eigen/Core>
 
 #include <string>
 #include <vector>
@@ -22,6 +22,8 @@ struct Tolerance {
 
 class Convergence {
 public:
+  using Values = Eigen::Ref<const Eigen::MatrixXd>; ///< a field's array, or an iterate's part of any alignment
+
   Convergence() = default;
   explicit Convergence(std::vector<Tolerance> tolerances)
       : fields_(tolerances.size()), tolerances_(std::move(tolerances))
@@ -33,7 +35,7 @@ public:
   /// @param field      number of the tolerance
   /// @param iteration  from 0
   /// @throws Error Errc::numeric: the iteration has diverged; names the field and the entry that moved most
-  void compare(std::size_t field, int iteration, const ConstArray& now, const ConstArray& before);
+  void compare(std::size_t field, int iteration, const Values& now, const Values& before);
   /// Did every field pass in its last comparison?
   [[nodiscard]] bool is_reached() const;
   /// What is still moving: "velocity changed by 1.2e-3 m/s …", for a message.

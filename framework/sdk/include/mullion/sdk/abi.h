@@ -102,7 +102,7 @@ typedef struct mullion_step {
   int64_t index;     /* coupling step, 1 for the first; 0 in start */
   double begin, end; /* s; in start both are the initial time */
   double dt;         /* s: the size, the same bits in every step but a shortened one (end - begin is not) */
-  int32_t iteration; /* of a strong scheme, 0 for the first */
+  int32_t iteration; /* of a step that is iterated, 0 for the first */
   int32_t reserved;
 } mullion_step;
 

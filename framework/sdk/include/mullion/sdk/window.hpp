@@ -32,7 +32,7 @@ struct TimeStep {
   std::int64_t index = 0;    ///< 1 for the first step, 0 in define and start
   double begin = 0, end = 0; ///< [s]
   double dt = 0;             ///< [s] the same bits in every step but a shortened one, unlike end - begin
-  int iteration = 0;         ///< of a strong scheme; 0 for the first
+  int iteration = 0;         ///< of a step that is iterated; 0 for the first
 };
 
 /// The services of the C boundary with failures turned into exceptions. One per module instance.
