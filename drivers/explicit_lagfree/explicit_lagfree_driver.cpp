@@ -54,21 +54,22 @@ public:
     roles_.send_evaluation_velocity(predicted_velocity(v, a, acceleration_.committed(2), dt, ratio), step);
     roles_.move_fluid((u_end - u) / dt, step);
     roles_.load_structure(roles_.load_on_structure.now(), step); // P^{n+1}
-    require_explicit(u_end);
+    require_explicit(u_end, step);
     previous_dt_.now()(0, 0) = dt;
   }
 
 private:
   /// The structure must have gone where the fluid already is.
-  void require_explicit(const Eigen::MatrixXd& expected) const
+  void require_explicit(const Eigen::MatrixXd& expected, const TimeStep& step) const
   {
     const auto found = displacement_.now();
     const double size = std::max({found.norm(), (found - displacement_.committed()).norm(), 1e-300});
     MULLION_REQUIRE((found - expected).norm() <= 1e-9 * size, Errc::config,
                     "explicit_lagfree needs a structure whose displacement at the end of a step does not depend on "
-                    "that step's load; '{}' moved by {:.6e} m where {:.6e} m was certain beforehand. Use an explicit "
+                    "that step's load; in step {} (t = {} s) '{}' moved by {:.6e} m where {:.6e} m was certain "
+                    "beforehand. Use an explicit "
                     "integrator (central_difference) without substeps, or another scheme",
-                    names_.structure, (found - displacement_.committed()).norm(),
+                    step.index, step.begin, names_.structure, (found - displacement_.committed()).norm(),
                     (expected - displacement_.committed()).norm());
   }
 

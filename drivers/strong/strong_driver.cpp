@@ -97,7 +97,7 @@ public:
 
   void step(const TimeStep& step) override
   {
-    convergence_.begin_step();
+    convergence_.begin_step(step);
     acceleration_.begin_step(step);
     load_before_ = roles_.load_on_structure.committed();
     Vector x = predicted(step), result;
@@ -166,13 +166,14 @@ private:
     return convergence_.is_reached();
   }
 
-  void give_up(const TimeStep& step) const
+  void give_up(const TimeStep& step)
   {
     const auto text = fmt::format("step {} (t = {} s) has not converged after {} iterations: {}", step.index,
                                   step.begin, options_.max_iterations, convergence_.describe());
     MULLION_REQUIRE(options_.on_not_converged != "fail", Errc::numeric,
                     "{}; allow more (max_iterations), or accept it (on_not_converged = \"accept_with_warning\")", text);
-    coupling_.warn(text + "; accepted");
+    if (!has_warned_) coupling_.warn(text + "; accepted, and so will be others, without a word");
+    has_warned_ = true; // once is enough; no state: it changes nothing but the log
   }
 
   // x is the motion on the structure's nodes, followed by the traction on them if both solvers run at the same time.
@@ -204,6 +205,7 @@ private:
   Eigen::MatrixXd load_before_; ///< within a step: the traction of the evaluation before
   DriverField iterations_;      ///< evaluations of H in the last step
   DriverField previous_dt_;     ///< dt_{n-1} [s]
+  bool has_warned_ = false;
 };
 
 } // namespace mullion::strong

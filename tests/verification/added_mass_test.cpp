@@ -112,11 +112,11 @@ TEST_CASE("every acceleration finds the same solution")
   for (std::size_t i = 0; i < added_mass_cases.size(); ++i) {
     const auto& wall = added_mass_cases[i];
     CAPTURE(wall.solid_density);
-    for (const Sets& sets :
-         {Sets{"driver.acceleration=constant", fmt::format("driver.relaxation={}", theta[i]),
-               "driver.max_iterations=1000"},
-          Sets{"driver.acceleration=aitken"}, Sets{"driver.acceleration=iqn_mvj"},
-          Sets{"driver.acceleration=iqn_mvj", "driver.iteration=parallel"}, Sets{"driver.reuse=0"}}) {
+    for (const Sets& sets : {Sets{"driver.acceleration=constant", fmt::format("driver.relaxation={}", theta[i]),
+                                  "driver.max_iterations=1000"},
+                             Sets{"driver.acceleration=aitken"}, Sets{"driver.acceleration=iqn_mvj"},
+                             Sets{"driver.acceleration=iqn_mvj", "driver.iteration=parallel"}, Sets{"driver.reuse=0"},
+                             Sets{"driver.predictor=quadratic"}}) { // which hits the first traction to round-off
       CAPTURE(fmt::format("{}", fmt::join(sets, " ")));
       CHECK(effort(wall.solid_density, sets).norm == doctest::Approx(wall.norm).epsilon(norm_tolerance));
     }

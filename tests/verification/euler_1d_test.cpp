@@ -41,9 +41,7 @@ ModeErrors mode_errors(std::size_t n, double k)
   const auto n_steps = static_cast<int>(std::ceil(period * c * static_cast<double>(n) / 0.4));
   const double dt = period / n_steps;
   const double scale = z * omega * mode.amplitude / std::sin(k);
-  const auto wall_velocity = [&](double t) {
-    return -mode.amplitude * omega * std::sin(omega * t);
-  };
+  const auto wall_velocity = [&](double t) { return -mode.amplitude * omega * std::sin(omega * t); };
   GasColumn column(n);
   set_acoustic_mode(column.state(), air, reference, mode, 0.0, 1.0 + mode.amplitude);
   std::vector<double> begin_pressure(n), density(n), velocity(n), pressure(n);
@@ -58,10 +56,9 @@ ModeErrors mode_errors(std::size_t n, double k)
     errors.wall_pressure = worst(errors.wall_pressure, std::abs(found - exact) / scale);
   }
   cell_fields(column.state(), air, density, velocity, pressure);
-  for (std::size_t i = 0; i < n;
-       ++i) // after a period the exact solution is the initial state; u shows phase errors
-    errors.cells += (std::abs(pressure[i] - begin_pressure[i]) + z * std::abs(velocity[i])) /
-                    scale / static_cast<double>(n);
+  for (std::size_t i = 0; i < n; ++i) // after a period the exact solution is the initial state; u shows phase errors
+    errors.cells +=
+        (std::abs(pressure[i] - begin_pressure[i]) + z * std::abs(velocity[i])) / scale / static_cast<double>(n);
   return errors;
 }
 
@@ -77,18 +74,16 @@ double standing_wave_error(std::size_t n)
   std::vector<double> exact(n);
   for (std::size_t i = 0; i < n; ++i) {
     const double half = 0.5 * k / static_cast<double>(n);
-    const double dp = 0.01 * std::cos(k * (static_cast<double>(i) + 0.5) / static_cast<double>(n)) *
-                      std::sin(half) / half;
+    const double dp =
+        0.01 * std::cos(k * (static_cast<double>(i) + 0.5) / static_cast<double>(n)) * std::sin(half) / half;
     exact[i] = 1e5 + dp;
     set_cell(column.state(), air, i, {1.3 * (1.0 + dp / 1.4e5), 0.0, exact[i]});
   }
-  for (int step = 0; step < n_steps; ++step)
-    column.advance(0.0, 0.0, period / n_steps);
+  for (int step = 0; step < n_steps; ++step) column.advance(0.0, 0.0, period / n_steps);
   double error = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const Primitive q = cell_primitive(column.state(), air, i);
-    error += (std::abs(q.pressure - exact[i]) + z * std::abs(q.velocity)) / 0.01 /
-             static_cast<double>(n);
+    error += (std::abs(q.pressure - exact[i]) + z * std::abs(q.velocity)) / 0.01 / static_cast<double>(n);
   }
   return error;
 }
@@ -119,8 +114,7 @@ TEST_CASE("a mode driven by the moving wall converges with second order, its wal
 
   CHECK(std::log2(e40.cells / e80.cells) > 1.9);
   CHECK(std::log2(e40.wall_pressure / e80.wall_pressure) > 1.9);
-  CHECK(e80.wall_pressure <
-        2e-5); // the extrapolation error alone is dx^2 (p_xx + z u_xx) / 3 = 1.7e-5 at most
+  CHECK(e80.wall_pressure < 2e-5); // the extrapolation error alone is dx^2 (p_xx + z u_xx) / 3 = 1.7e-5 at most
 }
 
 TEST_CASE("the wall's pressure gradient converges with first order, with the error of the "
@@ -158,27 +152,22 @@ TEST_CASE("Sod's shock tube with van Albada's limiter has the exact plateaus and
   GasColumn column(n);
   set_equal_cells(column.state(), 0.0, 1.0);
   for (std::size_t i = 0; i < n; ++i)
-    set_cell(column.state(), air, i,
-             i < n / 2 ? Primitive{1.0, 0.0, 1.0} : Primitive{0.125, 0.0, 0.1});
+    set_cell(column.state(), air, i, i < n / 2 ? Primitive{1.0, 0.0, 1.0} : Primitive{0.125, 0.0, 0.1});
 
-  for (int step = 0; step < 200; ++step)
-    column.advance(0.0, 0.0, 1e-3, {.limiter = Limiter::van_albada});
+  for (int step = 0; step < 200; ++step) column.advance(0.0, 0.0, 1e-3, {.limiter = Limiter::van_albada});
 
   for (std::size_t i = 0; i < n; ++i) {
     const double x = (static_cast<double>(i) + 0.5) / static_cast<double>(n);
     const Primitive q = cell_primitive(column.state(), air, i);
     CHECK(q.density < 1.0 + 1e-3); // no new extrema beyond 0.1 %
     CHECK(q.density > 0.125 * (1.0 - 1e-3));
-    if (x > 0.52 &&
-        x < 0.82) { // a few cells off the tail and the shock, which smear over two or three cells
+    if (x > 0.52 && x < 0.82) { // a few cells off the tail and the shock, which smear over two or three cells
       CHECK(q.pressure == doctest::Approx(0.30313).epsilon(0.01));
       CHECK(q.velocity == doctest::Approx(0.92745).epsilon(0.01));
     }
     if (x > 0.52 && x < 0.65)
-      CHECK(q.density ==
-            doctest::Approx(0.42632).epsilon(0.01)); // left of the contact, which smears more
-    if (x > 0.73 && x < 0.82)
-      CHECK(q.density == doctest::Approx(0.26557).epsilon(0.01));
+      CHECK(q.density == doctest::Approx(0.42632).epsilon(0.01)); // left of the contact, which smears more
+    if (x > 0.73 && x < 0.82) CHECK(q.density == doctest::Approx(0.26557).epsilon(0.01));
   }
 }
 
@@ -192,8 +181,7 @@ TEST_CASE("a pulse leaves through the open end and comes back from the closed on
     for (std::size_t i = 0; i < n; ++i) {
       const double x = (static_cast<double>(i) + 0.5) / static_cast<double>(n);
       const double dp = strength * std::exp(-std::pow((x - 0.5) / 0.1, 2.0));
-      set_cell(column.state(), air, i,
-               {1.3 * (1.0 + dp / 1.4e5), -dp / z, 1e5 + dp}); // runs to the left
+      set_cell(column.state(), air, i, {1.3 * (1.0 + dp / 1.4e5), -dp / z, 1e5 + dp}); // runs to the left
     }
     const double dt = 0.4 * 0.01 / c;
     for (int step = 0; step < 230; ++step) // 0.92 L / c: the reflection would be at 0.42
@@ -204,7 +192,6 @@ TEST_CASE("a pulse leaves through the open end and comes back from the closed on
     return largest / strength;
   };
 
-  CHECK(left_behind(LeftEnd::open) <
-        2e-3); // reconstruction error at the end, dx^2 / width^2 times a small factor
+  CHECK(left_behind(LeftEnd::open) < 2e-3); // reconstruction error at the end, dx^2 / width^2 times a small factor
   CHECK(left_behind(LeftEnd::closed) > 0.95);
 }

@@ -44,8 +44,7 @@ double growth_rate(const Scheme& scheme, double duration, Offset offset = Offset
   for (int step = 1; step <= n_steps; ++step) {
     scheme(run);
     const double t = step * dt * piston.fluid_frequency();
-    const double y =
-        std::log(std::hypot(run.u(), run.v() / run.omega()) / CoupledPiston::amplitude);
+    const double y = std::log(std::hypot(run.u(), run.v() / run.omega()) / CoupledPiston::amplitude);
     sum_t += t;
     sum_y += y;
     sum_tt += t * t;
@@ -64,8 +63,7 @@ std::vector<double> history(const Scheme& scheme, std::size_t n_cells, int steps
   CoupledPiston run(piston, n_cells, dt, offset);
   std::vector<double> samples;
   for (int sample = 0; sample < 100; ++sample) {
-    for (int step = 0; step < steps_per_sample; ++step)
-      scheme(run);
+    for (int step = 0; step < steps_per_sample; ++step) scheme(run);
     samples.push_back(run.u() / CoupledPiston::amplitude);
   }
   return samples;
@@ -74,8 +72,7 @@ std::vector<double> history(const Scheme& scheme, std::size_t n_cells, int steps
 double distance(const std::vector<double>& a, const std::vector<double>& b)
 {
   double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    largest = worst(largest, std::abs(a[i] - b[i]));
+  for (std::size_t i = 0; i < a.size(); ++i) largest = worst(largest, std::abs(a[i] - b[i]));
   return largest;
 }
 
@@ -86,10 +83,8 @@ TEST_CASE("CSS grows as its net lag says: half a step with the constant profile,
 {
   const Piston piston{.density_ratio = 200.0};
   const double dt = 0.5 * 0.02 / piston.fluid_speed();
-  const double per_step =
-      lag_growth_rate(piston, closed_frequencies(piston, 1)[0], dt) / piston.fluid_frequency();
-  CHECK(per_step ==
-        doctest::Approx(3.674e-4).epsilon(1e-3)); // the theory itself, from a separate tool
+  const double per_step = lag_growth_rate(piston, closed_frequencies(piston, 1)[0], dt) / piston.fluid_frequency();
+  CHECK(per_step == doctest::Approx(3.674e-4).epsilon(1e-3)); // the theory itself, from a separate tool
 
   // 3 %: what an error of 0.03 steps in the net lag would make; the eigenvalues of the discrete
   // scheme give 1.838e-4 and 3.668e-4.
@@ -137,8 +132,7 @@ TEST_CASE("CSS is first order in time, lag-free and strong schemes are second or
     return distance(history(scheme, n_cells, steps_per_sample, offset), reference);
   };
   const auto order = [&](const Scheme& scheme, Offset offset = Offset::none) {
-    return std::log2(error(scheme, 16, offset) /
-                     error(scheme, 32, offset)); // Courant numbers 0.2 and 0.1
+    return std::log2(error(scheme, 16, offset) / error(scheme, 32, offset)); // Courant numbers 0.2 and 0.1
   };
 
   for (const Scheme& scheme : {css_c, css_l, css_fluid_first_c, css_fluid_first_l}) {
@@ -169,10 +163,8 @@ TEST_CASE("in CSS the gas follows the bar exactly, for the mesh moves with the c
     v_begin = run.v();
   }
 
-  CHECK(std::abs(run.gas_end() - 1.0 - CoupledPiston::amplitude - integral) <
-        1e-14); // round-off of x_I = 1 m
-  CHECK(std::abs(run.gas_end() - 1.0 - run.u()) <
-        1e-14); // Newmark's u is the same trapezoidal integral of v
+  CHECK(std::abs(run.gas_end() - 1.0 - CoupledPiston::amplitude - integral) < 1e-14); // round-off of x_I = 1 m
+  CHECK(std::abs(run.gas_end() - 1.0 - run.u()) < 1e-14); // Newmark's u is the same trapezoidal integral of v
 }
 
 TEST_SUITE("full")

@@ -113,7 +113,7 @@ void Acceleration::begin_step(const TimeStep& step)
   // Columns approximate the map's derivative at their own step size.
   const double last = last_dt_.committed()(0, 0);
   const bool is_another_size = last > 0.0 && (step.dt > 2.0 * last || step.dt < 0.5 * last);
-  is_fresh_ = last == 0.0 || is_another_size;
+  is_fresh_ = ages_.committed()(0, 0) == 0.0 || is_another_size; // no column was ever kept, no Jacobian made
   if (is_another_size) {
     ages_.now().setZero();
     if (has_jacobian_) jacobian_.now().setZero();
@@ -159,6 +159,7 @@ void Acceleration::end_step(const TimeStep& step, const Vector& x, const Vector&
   const auto qr = filtered_qr(scaled, options_.filter);
   const auto m = static_cast<Eigen::Index>(qr.kept.size());
   if (m == 0) return;
+  ages_.now()(0, 0) = 1.0; // there is a Jacobian now
   Eigen::Map<Matrix> jacobian(jacobian_.now().data(), n_, n_);
   Matrix w(n_, m);
   for (Eigen::Index j = 0; j < m; ++j) {

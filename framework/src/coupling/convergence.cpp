@@ -11,8 +11,9 @@ namespace {
 constexpr double largest_growth = 1e6; // of a change, against the step's first
 } // namespace
 
-void Convergence::begin_step()
+void Convergence::begin_step(const TimeStep& step)
 {
+  step_ = step;
   for (auto& field : fields_) field = {};
 }
 
@@ -23,14 +24,14 @@ void Convergence::compare(std::size_t field, int iteration, const Values& now, c
   last.change = (now - before).norm();
   last.size = now.norm();
   const bool is_finite = std::isfinite(last.change) && std::isfinite(last.size);
-  if (is_finite && !last.has_first) {
+  const double allowed = tolerance.absolute + tolerance.relative * last.size;
+  if (is_finite && !last.has_first && last.change > 0.0) { // from rest a field's first change may be none
     last.first_change = last.change;
+    last.least_change = std::max(last.change, allowed); // a first guess may hit a field to round-off
     last.has_first = true;
   }
-  last.has_passed = is_finite && last.change <= tolerance.absolute + tolerance.relative * last.size;
-  // A first guess may hit a field to round-off: then what is allowed is the smallest change that counts.
-  const double allowed = tolerance.absolute + tolerance.relative * last.size;
-  const bool has_grown = !last.has_passed && last.change > largest_growth * std::max(last.first_change, allowed);
+  last.has_passed = is_finite && last.change <= allowed;
+  const bool has_grown = last.has_first && !last.has_passed && last.change > largest_growth * last.least_change;
   if (is_finite && !has_grown) return;
   Eigen::Index component = 0, entity = 0;
   double largest = -1.0;
@@ -42,11 +43,13 @@ void Convergence::compare(std::size_t field, int iteration, const Values& now, c
       if (!std::isfinite(moved)) break;
     }
   throw Error(Errc::numeric,
-              fmt::format("the iteration has diverged: in iteration {} the {} changed by {:.3e}, {} in the first; most "
+              fmt::format("the iteration has diverged: in step {} (t = {} s), iteration {}, the {} changed by {:.3e}, "
+                          "{} in the first; most "
                           "at [{}, {}] (component, entity), from {} to {}; a smaller relaxation, or acceleration = "
                           "\"iqn_ils\", may help",
-                          iteration + 1, tolerance.field, last.change, fmt::format("{:.3e}", last.first_change),
-                          component, entity, before(component, entity), now(component, entity)));
+                          step_.index, step_.begin, iteration + 1, tolerance.field, last.change,
+                          fmt::format("{:.3e}", last.first_change), component, entity, before(component, entity),
+                          now(component, entity)));
 }
 
 bool Convergence::is_reached() const

@@ -1,5 +1,5 @@
-// The interface ledger: the work and the momentum that crossed the interface so far, as either side counted them in each
-// coupling step, and the accumulated difference. It stands in driver/state, so it survives what the run survives.
+// The interface ledger: the work and the momentum that crossed the interface so far, as either side counted them in
+// each coupling step, and the accumulated difference. It stands in driver/state, so it survives what the run survives.
 //
 // What the fluid lost at its wall and what the structure got would be the same if the coupling were exact; the defect
 // sum(W_f - W_s) is positive when energy is lost at the interface, negative when the interface makes some. It is a

@@ -177,7 +177,7 @@ private:
   std::uint32_t n_in_flight_ = 0;
   std::vector<Check> checks_; ///< of this attempt
   std::size_t n_settled_ = 0;
-  Checker checker_; ///< after windows_, into which it looks
+  Checker checker_;         ///< after windows_, into which it looks
   bool is_running_ = false; ///< steps, rather than the start-up, whose deadline is longer
 };
 

@@ -35,6 +35,11 @@ std::string describe_interface(const Recorder::InterfaceSummary& i)
     text += fmt::format("              oscillates at {:.6g} Hz, grows at {:+.3e} 1/s (fitted; residual {:.1e})\n",
                         i.motion.frequency, i.motion.growth, i.motion.relative_residual);
   if (!i.lag) text += "              net lag: no constant of this scheme, no estimate\n";
+  else if (i.vacuum_frequency && i.motion.frequency > 0.0 &&
+           std::abs(i.motion.frequency - *i.vacuum_frequency) > 0.2 * *i.vacuum_frequency)
+    text += fmt::format("              net lag {:.4g} s, no estimate of what it does: another mode dominates than the "
+                        "structure's lowest ({:.6g} Hz alone)\n",
+                        *i.lag, *i.vacuum_frequency);
   else if (i.vacuum_frequency && i.motion.frequency > 0.0)
     text += fmt::format("              net lag {:.4g} s: it alone makes {:+.3e} 1/s (structure alone: {:.6g} Hz)\n",
                         *i.lag, growth_from_lag(*i.lag, i.motion.frequency, *i.vacuum_frequency), *i.vacuum_frequency);

@@ -13,6 +13,8 @@ using namespace mullion;
 
 namespace {
 
+const TimeStep third_step{3, 0.5, 0.75, 0.25, 0};
+
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
 
 /// Two components on three entities.
@@ -41,7 +43,7 @@ std::string complaint(Convergence& convergence, int iteration, const Values& now
 TEST_CASE("a field passes when its change is at most the relative part of its size")
 {
   Convergence convergence({{"velocity", 1e-3, 0.0}});
-  convergence.begin_step();
+  convergence.begin_step(third_step);
 
   convergence.compare(0, 0, all(1.0).array(), all(1.0 + 0.9e-3).array());
   CHECK(convergence.is_reached());
@@ -52,8 +54,8 @@ TEST_CASE("a field passes when its change is at most the relative part of its si
 TEST_CASE("a field at rest passes by its floor, and without one by being equal")
 {
   Convergence with_floor({{"velocity", 1e-6, 1e-12}}), without({{"velocity", 1e-6, 0.0}});
-  with_floor.begin_step();
-  without.begin_step();
+  with_floor.begin_step(third_step);
+  without.begin_step(third_step);
 
   with_floor.compare(0, 0, all(0.0).array(), all(0.0).array());
   without.compare(0, 0, all(0.0).array(), all(0.0).array());
@@ -69,7 +71,7 @@ TEST_CASE("a field at rest passes by its floor, and without one by being equal")
 TEST_CASE("all fields must pass, each by its last comparison, and none counts before it was compared")
 {
   Convergence convergence({{"velocity", 1e-6, 0.0}, {"traction", 1e-6, 0.0}});
-  convergence.begin_step();
+  convergence.begin_step(third_step);
   CHECK_FALSE(convergence.is_reached());
 
   convergence.compare(0, 0, all(1.0).array(), all(1.0).array());
@@ -79,14 +81,14 @@ TEST_CASE("all fields must pass, each by its last comparison, and none counts be
   convergence.compare(1, 1, all(1.0).array(), all(1.0).array());
   CHECK(convergence.is_reached());
 
-  convergence.begin_step();
+  convergence.begin_step(third_step);
   CHECK_FALSE(convergence.is_reached());
 }
 
 TEST_CASE("what is still moving is told with its allowance")
 {
   Convergence convergence({{"velocity", 0.5, 0.25}, {"traction", 1e-6, 0.0}});
-  convergence.begin_step();
+  convergence.begin_step(third_step);
   Values now, before;
   now.entries[0] = 3.0;
   before.entries[0] = 1.0;
@@ -105,7 +107,7 @@ TEST_CASE("what is not finite never converges: it throws, naming the field and t
       CAPTURE(entry);
       // With a tolerance that infinity would pass: inf <= inf.
       Convergence convergence({{"traction", inf, inf}});
-      convergence.begin_step();
+      convergence.begin_step(third_step);
       Values now = all(2.0), before = all(1.0);
       now.entries[entry] = value;
 
@@ -121,7 +123,7 @@ TEST_CASE("what is not finite never converges: it throws, naming the field and t
 TEST_CASE("equal infinities are no agreement")
 {
   Convergence convergence({{"traction", 1e-6, 1e-9}});
-  convergence.begin_step();
+  convergence.begin_step(third_step);
 
   CHECK(complaint(convergence, 0, all(inf), all(inf)) != "");
   CHECK_FALSE(convergence.is_reached());
@@ -130,7 +132,7 @@ TEST_CASE("equal infinities are no agreement")
 TEST_CASE("a change that grows a million times beyond the step's first has diverged, and the message names the entry")
 {
   Convergence convergence({{"velocity", 1e-6, 1e-12}});
-  convergence.begin_step();
+  convergence.begin_step(third_step);
   const Values zero = all(0.0);
   Values first = zero, large = zero;
   first.entries[1] = 1e-3;
@@ -142,7 +144,8 @@ TEST_CASE("a change that grows a million times beyond the step's first has diver
   large.entries[5] = 1.01e3;
   const auto message = complaint(convergence, 2, large, zero);
 
-  CHECK(message == "the iteration has diverged: in iteration 3 the velocity changed by 1.010e+03, 1.000e-03 in the "
+  CHECK(message == "the iteration has diverged: in step 3 (t = 0.5 s), iteration 3, the velocity changed by 1.010e+03, "
+                   "1.000e-03 in the "
                    "first; most at [1, 2] (component, entity), from 0 to 1010; a smaller relaxation, or acceleration = "
                    "\"iqn_ils\", may help");
 }
@@ -150,10 +153,10 @@ TEST_CASE("a change that grows a million times beyond the step's first has diver
 TEST_CASE("growth counts against the first change of this step, not of an earlier one")
 {
   Convergence convergence({{"velocity", 1e-6, 1e-12}});
-  convergence.begin_step();
+  convergence.begin_step(third_step);
   CHECK(complaint(convergence, 0, all(1e-9), all(0.0)) == "");
 
-  convergence.begin_step();
+  convergence.begin_step(third_step);
 
   CHECK(complaint(convergence, 0, all(1.0), all(0.0)) == "");
   CHECK(complaint(convergence, 1, all(1e5), all(0.0)) == "");
@@ -162,7 +165,7 @@ TEST_CASE("growth counts against the first change of this step, not of an earlie
 TEST_CASE("a first change of rounding size is no measure: growth counts from the floor")
 {
   Convergence convergence({{"velocity", 0.0, 1e-6}});
-  convergence.begin_step();
+  convergence.begin_step(third_step);
 
   CHECK(complaint(convergence, 0, all(1e-15), all(0.0)) == "");
   CHECK(complaint(convergence, 1, all(0.1), all(0.0)) == ""); // 0.24 < 1e6 times the floor

@@ -2,10 +2,13 @@
 // against the size N = |new| (Euclidean norms over all entries),
 //
 //     converged  if d and N are finite and d <= absolute + relative N
-//     diverged   if d or N is not finite, or d > 1e6 times the step's first d
+//     diverged   if d or N is not finite, or d > 1e6 times the step's first d (or what would have passed then, if that
+//                is more)
 //
 // so infinity never passes for convergence, and a field at rest (0 against 0) passes by its absolute part.
 #pragma once
+
+#include <mullion/sdk/window.hpp>
 
 #include <Eigen/Core>
 
@@ -30,7 +33,7 @@ public:
   {
   }
 
-  void begin_step();
+  void begin_step(const TimeStep& step);
   /// Compare one field's new values with its old ones.
   /// @param field      number of the tolerance
   /// @param iteration  from 0
@@ -44,10 +47,12 @@ public:
 private:
   struct Last {
     double first_change = 0.0, change = 0.0, size = 0.0;
+    double least_change = 0.0; ///< that growth is measured by: the first one, or what would have passed
     bool has_first = false, has_passed = false;
   };
   std::vector<Last> fields_;
   std::vector<Tolerance> tolerances_;
+  TimeStep step_; ///< for messages
 };
 
 } // namespace mullion
