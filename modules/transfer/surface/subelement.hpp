@@ -40,6 +40,7 @@ struct OverlayReport {
   double min_coverage = 1.0;            ///< over the source faces: overlaid measure / own measure
   double max_coverage = 1.0;            ///< the same, largest
   double largest_gap = 0.0;             ///< between paired points [m]
+  double largest_overhang = 0.0;        ///< by which a source node lies beyond the target's end [m]
   double covered_fraction = 1.0;        ///< of the source's measure that has a counterpart
   double target_covered_fraction = 1.0; ///< of the target's measure that has a counterpart
   bool is_opposite = false;             ///< the two sides' normals point against each other
