@@ -62,8 +62,7 @@ PolylineNodes polyline_nodes(const SurfaceMesh& mesh, double feature_angle)
 }
 
 std::vector<std::int32_t> match_features(const SurfaceMesh& source, const PolylineNodes& source_nodes,
-                                         const SurfaceMesh& target, const PolylineNodes& target_nodes,
-                                         double tolerance)
+                                         const SurfaceMesh& target, const PolylineNodes& target_nodes, double tolerance)
 {
   std::vector<std::int32_t> match(static_cast<std::size_t>(source.n_nodes()), -1);
   for (const auto s : source_nodes.features) {

@@ -59,6 +59,8 @@ std::string complaint_about(const SurfaceMesh& mesh)
     if (!mesh.nodes.col(i).allFinite()) return words("the coordinates of ", place_of_node(mesh, i), " are not finite");
   for (std::int64_t f = 0; f < mesh.n_faces(); ++f)
     if (auto complaint = complaint_about_face(mesh, f); !complaint.empty()) return complaint;
+  if (static_cast<std::int64_t>(degenerate_faces(mesh).size()) == mesh.n_faces())
+    return words("no face has ", mesh.dimension == 2 ? "a length" : "an area", "; are all nodes at one place?");
   return mesh.dimension == 2 ? complaint_about_directions(mesh) : "";
 }
 

@@ -42,8 +42,8 @@ struct SurfaceMesh {
 /// What is wrong with a mesh, in words that name the place; "" if nothing is.
 ///
 /// Dimension and shapes, node numbers in range, nodes per face (2 in 2D, 3 or 4 in 3D), finite coordinates, no node
-/// twice in a face, and in 2D one direction along each polyline (a node that ends two faces or begins two is an error,
-/// one that three or more share is a branch and allowed).
+/// twice in a face, not all faces degenerate, and in 2D one direction along each polyline (a node that ends two faces
+/// or begins two is an error, one that three or more share is a branch and allowed).
 [[nodiscard]] std::string complaint_about(const SurfaceMesh& mesh);
 
 /// Place of a node [m].
