@@ -183,10 +183,13 @@ void add_closest_points(const SurfaceMesh& source, const FaceTree& target_tree,
       measure += weight;
       set.points.push_back({f, closest.face, {p.xi[0], p.xi[1]}, {closest.xi[0], closest.xi[1]}, weight});
     }
+    if (!(measure > 0.0)) { // a degenerate face carries nothing
+      set.points.resize(first_point);
+      continue;
+    }
     // Only a rule that is too coarse for a warped quadrilateral differs from the face's own measure.
-    if (measure > 0.0)
-      for (std::size_t i = first_point; i < set.points.size(); ++i)
-        set.points[i].weight *= face_measure(source, f) / measure;
+    for (std::size_t i = first_point; i < set.points.size(); ++i)
+      set.points[i].weight *= face_measure(source, f) / measure;
     set.coverage[index(f)] = 1.0;
   }
 }

@@ -51,7 +51,7 @@ struct Entry {
 /// sum_q w_q N_f^i N_f^k: the same of the source.
 [[nodiscard]] Operator source_mass(const SurfaceMesh& source, std::span<const IntegrationPoint> points);
 
-/// integral N_i N_k over the mesh itself, by a rule that is exact on lines, triangles and plane parallelograms (two
+/// integral N_i N_k over the mesh itself, by a rule that is exact on lines, triangles and plane quadrilaterals (two
 /// points a direction).
 [[nodiscard]] Operator native_mass(const SurfaceMesh& mesh);
 
