@@ -41,9 +41,9 @@ double relative(double difference, double scale)
 }
 
 /// "3 source faces (face 7 at (0.1, 0.2) m, …)"; the first three are named.
-template <typename Place> std::string named(const FaceList& list, const std::string& what, Place place)
+template <typename Place> std::string named(const FaceList& list, const char* one, const char* several, Place place)
 {
-  std::string text = words(list.count, " ", what, list.count == 1 ? "" : "s", " (");
+  std::string text = words(list.count, " ", list.count == 1 ? one : several, " (");
   const std::size_t n_named = std::min<std::size_t>(list.first.size(), 3);
   for (std::size_t i = 0; i < n_named; ++i) text += (i == 0 ? "" : "; ") + place(list.first[i]);
   return text + (list.count > static_cast<std::int64_t>(n_named) ? "; …)" : ")");
@@ -120,30 +120,30 @@ Verdict judge(const SurfaceMesh& source, const SurfaceMesh& target, const Overla
     warn("the source reaches ", report.largest_overhang, " m beyond the target's end; the force there goes to the end",
          " node, whose traction is wrong");
   if (report.uncovered_faces.count > 0)
-    warn(named(report.uncovered_faces, "source face", source_face), " have no counterpart; ",
+    warn(named(report.uncovered_faces, "source face", "source faces", source_face), " without a counterpart; ",
          100.0 * (1.0 - report.covered_fraction), " % of the source is not covered, and its force goes to the closest",
          " points");
   if (report.min_coverage < 1.0 - tolerances.coverage_slack || report.max_coverage > 1.0 + tolerances.coverage_slack)
     warn("source faces are covered between ", report.min_coverage, " and ", report.max_coverage, " times; ",
          report.partly_covered_faces.count == 0
              ? std::string("all in full")
-             : named(report.partly_covered_faces, "source face", source_face) + " in part");
+             : named(report.partly_covered_faces, "source face", "source faces", source_face) + " in part");
   if (report.unmatched_target_nodes.count > 0)
-    warn(named(report.unmatched_target_nodes, "target node", target_node), " have no counterpart; ",
+    warn(named(report.unmatched_target_nodes, "target node", "target nodes", target_node), " without a counterpart; ",
          100.0 * (1.0 - report.target_covered_fraction), " % of the target receives nothing");
   if (report.unmatched_source_nodes.count > 0)
-    warn(named(report.unmatched_source_nodes, "source node", source_node),
-         " do not face the target; their places on it are interpolated");
+    warn(named(report.unmatched_source_nodes, "source node", "source nodes", source_node),
+         " not facing the target; places on it are interpolated");
   if (report.unmatched_source_features.count > 0)
-    warn(named(report.unmatched_source_features, "corner or end of the source", source_node),
-         " have no partner on the target");
+    warn(named(report.unmatched_source_features, "corner or end of the source", "corners and ends of the source", source_node),
+         " without a partner on the target");
   if (report.unmatched_target_features.count > 0)
-    warn(named(report.unmatched_target_features, "corner or end of the target", target_node),
-         " have no partner on the source");
+    warn(named(report.unmatched_target_features, "corner or end of the target", "corners and ends of the target", target_node),
+         " without a partner on the source");
   if (report.skipped_source_faces.count > 0)
-    warn(named(report.skipped_source_faces, "source face", source_face), " have no extent and are skipped");
+    warn(named(report.skipped_source_faces, "source face", "source faces", source_face), " without extent, skipped");
   if (report.skipped_target_faces.count > 0)
-    warn(named(report.skipped_target_faces, "target face", target_face), " have no extent and are skipped");
+    warn(named(report.skipped_target_faces, "target face", "target faces", target_face), " without extent, skipped");
   const double a = total_measure(source), b = total_measure(target);
   if (relative(std::abs(a - b), a) > tolerances.measure_warning)
     warn("the source measures ", a, source.dimension == 2 ? " m" : " m^2", ", the target ", b,

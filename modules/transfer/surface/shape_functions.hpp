@@ -4,7 +4,7 @@
 
 #include "surface_mesh.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <array>
 #include <cmath>
