@@ -118,7 +118,9 @@ TEST_CASE("a driver knows the coupling interface, the SDK, its kernels and Eigen
 TEST_CASE("a kernel knows other kernels and Eigen: neither windows nor case files")
 {
   bool is_any = false;
-  for (const auto& folder : plugin_folders_of_tree())
+  auto folders = plugin_folders_of_tree();
+  for (const auto& folder : kernel_folders_of_tree()) folders.push_back(folder);
+  for (const auto& folder : folders)
     if (const auto kernels = kernels_of(folder); !kernels.empty()) {
       is_any = true;
       check_includes(kernels,

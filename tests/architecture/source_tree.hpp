@@ -30,8 +30,12 @@ std::vector<Include> includes_of(const std::string& file);
 /// A C++ standard header or one of the system: no folder in it.
 bool is_standard(const Include& include);
 
-/// Folders with a CMakeLists.txt two levels below modules/ and one below drivers/.
+/// Folders with a CMakeLists.txt two levels below modules/ and one below drivers/, and with a plugin.cpp or a
+/// <name>_driver.cpp.
 std::vector<std::string> plugin_folders_of_tree();
+
+/// Those without either: kernels that several plug-ins share.
+std::vector<std::string> kernel_folders_of_tree();
 
 /// "modules/fluid/euler_1d" -> "euler_1d"
 std::string last_part(const std::string& path);

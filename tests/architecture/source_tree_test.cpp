@@ -61,14 +61,26 @@ std::vector<Include> includes_of(const std::string& file)
 
 bool is_standard(const Include& include) { return !include.is_quoted && include.name.find('/') == std::string::npos; }
 
-std::vector<std::string> plugin_folders_of_tree()
+namespace {
+
+std::vector<std::string> folders_of_tree(bool are_plugins)
 {
   std::vector<std::string> folders;
   for (const char* root : {"modules", "drivers"})
-    for (const auto& file : files_under(root, {"CMakeLists.txt"}))
-      if (const auto folder = fs::path(file).parent_path().string(); folder != root) folders.push_back(folder);
+    for (const auto& file : files_under(root, {"CMakeLists.txt"})) {
+      const auto folder = fs::path(file).parent_path().string();
+      const bool is_plugin = fs::exists(source_root() / folder / "plugin.cpp") ||
+                             fs::exists(source_root() / folder / (last_part(folder) + "_driver.cpp"));
+      if (folder != root && is_plugin == are_plugins) folders.push_back(folder);
+    }
   return folders;
 }
+
+} // namespace
+
+std::vector<std::string> plugin_folders_of_tree() { return folders_of_tree(true); }
+
+std::vector<std::string> kernel_folders_of_tree() { return folders_of_tree(false); }
 
 std::string last_part(const std::string& path) { return fs::path(path).filename().string(); }
 
@@ -80,5 +92,6 @@ TEST_CASE("the tests look at the tree that they belong to")
 
   CHECK(sources_under("framework").size() > 50);
   CHECK(plugin_folders_of_tree().size() >= 5);
+  CHECK(kernel_folders_of_tree().size() >= 1);
   CHECK(includes_of("framework/sdk/include/mullion/sdk/abi.h").size() == 1);
 }

@@ -1,0 +1,74 @@
+// What a transfer keeps and what it does not: force, moment and work of both sides, and words for a user when the two
+// surfaces do not fit each other.
+#pragma once
+
+#include "operators.hpp"
+#include "subelement.hpp"
+#include "surface_mesh.hpp"
+
+#include <string>
+#include <vector>
+
+namespace mullion::surface {
+
+/// Resultant of what acts on one side. In 2D per unit depth, and the moment is that about the third axis.
+struct Resultant {
+  Point force = Point::Zero();  ///< [N]
+  Point moment = Point::Zero(); ///< about the origin [N m]
+  double force_scale = 0.0;     ///< sum of the magnitudes: what a defect is measured by [N]
+  double moment_scale = 0.0;    ///< sum of distance from the mean node * magnitude [N m]
+};
+
+/// @param loads  (dimension x nodes) [N]
+[[nodiscard]] Resultant resultant_of_loads(const SurfaceMesh& mesh, const FieldView& loads);
+
+/// Integrals of t and x x t over the surface itself.
+///
+/// @param traction  (dimension x nodes or faces) [Pa]
+[[nodiscard]] Resultant resultant_of_traction(const SurfaceMesh& mesh, const FieldView& traction, Location location);
+
+/// sum_j R_j . v_j: power of loads on velocities [W], or their work on displacements [J].
+[[nodiscard]] double work_of(const FieldView& loads, const FieldView& motion);
+
+/// Both sides of one transfer.
+struct Balance {
+  Resultant source, target;
+  double source_work = 0.0, target_work = 0.0;       ///< [W] or [J]
+  double source_measure = 0.0, target_measure = 0.0; ///< length [m] or area [m^2]
+};
+
+/// Relative defects of a balance, target against source.
+struct Defects {
+  double force = 0.0;   ///< |difference| / sum of the source's magnitudes
+  double moment = 0.0;  ///< |difference| / the source's moment scale
+  double work = 0.0;    ///< |difference| / the larger of both
+  double measure = 0.0; ///< |difference| / the source's
+};
+
+/// A defect whose scale is zero is zero if the two agree, else infinite.
+[[nodiscard]] Defects defects_of(const Balance& balance);
+
+/// What is put up with. Gaps and overhangs are in units of the larger of the two meshes' mean face sizes.
+struct Tolerances {
+  double gap_warning = 0.5, gap_error = 2.0;
+  double overhang_error = 0.5;  ///< a source that reaches further beyond the target; less is a warning
+  double coverage_slack = 0.1;  ///< of a source face, either way: a warning
+  double measure_warning = 0.1; ///< relative difference of the two lengths or areas
+  double force_error = 1e-10;   ///< relative; for loads on the source's metric
+  double work_error = 1e-10;    ///< relative; for motion that is adjoint to the loads
+};
+
+struct Verdict {
+  std::vector<std::string> warnings, errors;
+};
+
+/// What a user must know about two surfaces that were overlaid, place by place.
+[[nodiscard]] Verdict judge(const SurfaceMesh& source, const SurfaceMesh& target, const OverlayReport& report,
+                            const Tolerances& tolerances);
+
+/// Errors where force or work of a transfer are off by more than the tolerances.
+///
+/// @param keeps_work  the motion was transferred by the operator that is adjoint to the loads'
+[[nodiscard]] Verdict judge(const Balance& balance, bool keeps_work, const Tolerances& tolerances);
+
+} // namespace mullion::surface

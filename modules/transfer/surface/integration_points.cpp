@@ -1,0 +1,232 @@
+#include "integration_points.hpp"
+
+#include "quadrature_rules.hpp"
+#include "shape_functions.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace mullion::surface {
+
+namespace {
+
+constexpr int largest_order = 64;
+
+std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+/// A corner of a piece, or of a triangle of it, on both sides.
+struct Corner {
+  double source_xi[2], target_xi[2];
+  Point source_x, target_x;
+};
+
+Point metric_point(const Corner& c, Metric metric)
+{
+  if (metric == Metric::source) return c.source_x;
+  return metric == Metric::target ? c.target_x : Point(0.5 * (c.source_x + c.target_x));
+}
+
+double simplex_measure(std::span<const Corner> c, Metric metric)
+{
+  const Point a = metric_point(c[0], metric), b = metric_point(c[1], metric);
+  if (c.size() == 2) return (b - a).norm();
+  return 0.5 * (b - a).cross(metric_point(c[2], metric) - a).norm();
+}
+
+/// The mean of corners with weights. In a quadrilateral the mean of places is not at the mean of local coordinates.
+Corner weighted(const SurfaceMesh& source, const SurfaceMesh& target, const Subelement& piece,
+                std::span<const Corner> corners, const double* weights)
+{
+  Corner c{{0.0, 0.0}, {0.0, 0.0}, Point::Zero(), Point::Zero()};
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    for (int i = 0; i < 2; ++i) c.source_xi[i] += weights[k] * corners[k].source_xi[i];
+    for (int i = 0; i < 2; ++i) c.target_xi[i] += weights[k] * corners[k].target_xi[i];
+    c.source_x += weights[k] * corners[k].source_x;
+    c.target_x += weights[k] * corners[k].target_x;
+  }
+  if (source.face(piece.source_face).size() == 4)
+    invert_quadrilateral(source, piece.source_face, c.source_x, c.source_xi);
+  if (target.face(piece.target_face).size() == 4)
+    invert_quadrilateral(target, piece.target_face, c.target_x, c.target_xi);
+  return c;
+}
+
+/// Points of one segment or triangle; its measure on the source is returned.
+double add_simplex(const SurfaceMesh& source, const SurfaceMesh& target, const Subelement& piece,
+                   std::span<const Corner> corners, const Rule& rule, Metric metric,
+                   std::vector<IntegrationPoint>& points)
+{
+  const double measure = simplex_measure(corners, metric);
+  if (!(measure > 0.0)) return simplex_measure(corners, Metric::source); // it has a part on the other side only
+  const double reference = corners.size() == 2 ? 1.0 : 0.5;              // measure of the rule's simplex
+  for (const auto& p : rule) {
+    const double a = p.xi[0], b = p.xi[1];
+    const std::array<double, 3> weights =
+        corners.size() == 2 ? std::array{1.0 - a, a, 0.0} : std::array{1.0 - a - b, a, b};
+    const auto c = weighted(source, target, piece, corners, weights.data());
+    points.push_back({piece.source_face,
+                      piece.target_face,
+                      {c.source_xi[0], c.source_xi[1]},
+                      {c.target_xi[0], c.target_xi[1]},
+                      p.weight / reference * measure});
+  }
+  return simplex_measure(corners, Metric::source);
+}
+
+/// All corners of a piece.
+std::vector<Corner> corners_of(const SurfaceMesh& source, const SurfaceMesh& target, const Subelement& piece)
+{
+  std::vector<Corner> corners;
+  for (int k = 0; k < piece.n_vertices; ++k) {
+    const double *s = piece.source_xi[k], *t = piece.target_xi[k];
+    corners.push_back({{s[0], s[1]},
+                       {t[0], t[1]},
+                       map_to_space(source, piece.source_face, s),
+                       map_to_space(target, piece.target_face, t)});
+  }
+  return corners;
+}
+
+/// Points of one piece; its measure on the source is returned.
+double add_piece(const SurfaceMesh& source, const SurfaceMesh& target, const Subelement& piece, const Rule& rule,
+                 Metric metric, std::vector<IntegrationPoint>& points)
+{
+  const auto corners = corners_of(source, target, piece);
+  if (corners.size() <= 3) return add_simplex(source, target, piece, corners, rule, metric, points);
+  const std::vector<double> equal(corners.size(), 1.0 / static_cast<double>(corners.size()));
+  const auto middle = weighted(source, target, piece, corners, equal.data());
+  double measure = 0.0;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const std::array triangle = {middle, corners[k], corners[(k + 1) % corners.size()]};
+    measure += add_simplex(source, target, piece, triangle, rule, metric, points);
+  }
+  return measure;
+}
+
+std::vector<std::int32_t> faces_without_point(const SurfaceMesh& target, const std::vector<IntegrationPoint>& points)
+{
+  std::vector<bool> has_point(static_cast<std::size_t>(target.n_faces()), false);
+  for (const auto& p : points) has_point[index(p.target_face)] = true;
+  std::vector<std::int32_t> empty;
+  for (std::int32_t f = 0; f < target.n_faces(); ++f)
+    if (!has_point[index(f)]) empty.push_back(f);
+  return empty;
+}
+
+/// Loads of a unit traction: sum over the points of w N_j.
+std::vector<double> unit_load(const SurfaceMesh& target, const std::vector<IntegrationPoint>& points)
+{
+  std::vector<double> load(static_cast<std::size_t>(target.n_nodes()), 0.0);
+  for (const auto& p : points) {
+    const auto nodes = target.face(p.target_face);
+    const auto n = shape_values(nodes.size(), p.target_xi);
+    for (std::size_t k = 0; k < nodes.size(); ++k) load[index(nodes[k])] += p.weight * n[k];
+  }
+  return load;
+}
+
+/// Points of all source faces, each face with its own order.
+PointSet projected(const SurfaceMesh& source, const SurfaceMesh& target, const FaceTree& target_tree,
+                   const std::vector<int>& order)
+{
+  PointSet set;
+  set.coverage.assign(static_cast<std::size_t>(source.n_faces()), 0.0);
+  for (std::int32_t f = 0; f < source.n_faces(); ++f)
+    add_closest_points(source, target_tree, std::span(&f, 1), order[index(f)], set);
+  set.target_empty = faces_without_point(target, set.points);
+  return set;
+}
+
+} // namespace
+
+PointSet points_of_overlay(const SurfaceMesh& source, const SurfaceMesh& target, std::span<const Subelement> pieces,
+                           Metric metric)
+{
+  const Rule segment = gauss_rule(2), triangle = face_rule(3, 2), six = triangle_rule_of_degree_4();
+  PointSet set;
+  set.coverage.assign(static_cast<std::size_t>(source.n_faces()), 0.0);
+  for (std::size_t begin = 0; begin < pieces.size();) {
+    const auto face = pieces[begin].source_face;
+    const std::size_t first_point = set.points.size();
+    double measure = 0.0;
+    std::size_t end = begin;
+    for (; end < pieces.size() && pieces[end].source_face == face; ++end) {
+      const auto& piece = pieces[end];
+      const bool has_quadrilateral = source.face(face).size() == 4 || target.face(piece.target_face).size() == 4;
+      const auto& rule = piece.n_vertices == 2 ? segment : has_quadrilateral ? six : triangle;
+      measure += add_piece(source, target, piece, rule, metric, set.points);
+    }
+    begin = end;
+    const double own = face_measure(source, face);
+    const double coverage = own > 0.0 ? measure / own : 0.0;
+    if (!(coverage > 1e-12)) set.points.resize(first_point); // nothing that could be scaled
+    else {
+      set.coverage[index(face)] = coverage;
+      if (metric != Metric::target)
+        for (std::size_t i = first_point; i < set.points.size(); ++i) set.points[i].weight *= own / measure;
+    }
+  }
+  set.target_empty = faces_without_point(target, set.points);
+  return set;
+}
+
+void add_closest_points(const SurfaceMesh& source, const FaceTree& target_tree,
+                        std::span<const std::int32_t> source_faces, int n, PointSet& set)
+{
+  for (const auto f : source_faces) {
+    double measure = 0.0;
+    const std::size_t first_point = set.points.size();
+    for (const auto& p : face_rule(source.face(f).size(), n)) {
+      const double weight = p.weight * measure_density(source, f, p.xi);
+      const auto closest = target_tree.closest(map_to_space(source, f, p.xi));
+      measure += weight;
+      set.points.push_back({f, closest.face, {p.xi[0], p.xi[1]}, {closest.xi[0], closest.xi[1]}, weight});
+    }
+    if (!(measure > 0.0)) { // a degenerate face carries nothing
+      set.points.resize(first_point);
+      continue;
+    }
+    // Only a rule that is too coarse for a warped quadrilateral differs from the face's own measure.
+    for (std::size_t i = first_point; i < set.points.size(); ++i)
+      set.points[i].weight *= face_measure(source, f) / measure;
+    set.coverage[index(f)] = 1.0;
+  }
+}
+
+PointSet quadrature_points(const SurfaceMesh& source, const SurfaceMesh& target, const FaceTree& target_tree,
+                           const QuadratureOptions& options)
+{
+  std::vector<int> order(static_cast<std::size_t>(source.n_faces()), options.n_points);
+  auto set = projected(source, target, target_tree, order);
+  if (!options.is_adaptive) return set;
+
+  const FaceTree source_tree(source);
+  for (bool has_changed = true; has_changed && !set.target_empty.empty();) {
+    has_changed = false;
+    std::vector<bool> is_raised(order.size(), false);
+    for (const auto f : set.target_empty) {
+      const auto beside = source_tree.closest(face_centre(target, f)).face;
+      if (beside >= 0 && order[index(beside)] < largest_order) is_raised[index(beside)] = has_changed = true;
+    }
+    for (std::size_t f = 0; f < order.size(); ++f)
+      if (is_raised[f]) order[f] = std::min(2 * order[f], largest_order);
+    if (has_changed) set = projected(source, target, target_tree, order);
+  }
+
+  while (options.tolerance > 0.0 && *std::min_element(order.begin(), order.end()) < largest_order) {
+    for (auto& n : order) n = std::min(2 * n, largest_order);
+    auto finer = projected(source, target, target_tree, order);
+    const auto before = unit_load(target, set.points), after = unit_load(target, finer.points);
+    double change = 0.0, largest = 0.0;
+    for (std::size_t j = 0; j < after.size(); ++j) {
+      change = std::max(change, std::abs(after[j] - before[j]));
+      largest = std::max(largest, std::abs(after[j]));
+    }
+    set = std::move(finer);
+    if (change < options.tolerance * largest) break;
+  }
+  return set;
+}
+
+} // namespace mullion::surface

@@ -1,0 +1,86 @@
+#include "mass_matrix.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace mullion::surface {
+
+MassMatrix mass_matrix(Operator matrix)
+{
+  MassMatrix mass;
+  const Eigen::Index n = matrix.rows();
+  mass.row_sums = Eigen::VectorXd::Zero(n);
+  std::vector<double> diagonal(static_cast<std::size_t>(n), 0.0);
+  double largest = 0.0;
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Operator::InnerIterator it(matrix, i); it; ++it) {
+      mass.row_sums[i] += it.value();
+      if (it.col() != i) continue;
+      diagonal[static_cast<std::size_t>(i)] = it.value();
+      largest = std::max(largest, it.value());
+    }
+  std::vector<bool> is_pinned(static_cast<std::size_t>(n), false);
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (!(diagonal[static_cast<std::size_t>(i)] > 1e-14 * largest)) {
+      is_pinned[static_cast<std::size_t>(i)] = true;
+      mass.pinned.push_back(static_cast<std::int32_t>(i));
+    }
+
+  std::vector<Entry> entries; // of the matrix with ones for the pinned rows
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto row = static_cast<std::int32_t>(i);
+    if (is_pinned[static_cast<std::size_t>(i)]) entries.push_back({row, row, 1.0});
+    else
+      for (Operator::InnerIterator it(matrix, i); it; ++it)
+        if (!is_pinned[static_cast<std::size_t>(it.col())])
+          entries.push_back({row, static_cast<std::int32_t>(it.col()), it.value()});
+  }
+  const Eigen::SparseMatrix<double> pinned = assembled(n, n, entries);
+  mass.factors = std::make_unique<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>(pinned);
+  mass.is_solvable = mass.factors->info() == Eigen::Success && (mass.factors->vectorD().array() > 0.0).all();
+  mass.matrix = std::move(matrix);
+  return mass;
+}
+
+Field solve(const MassMatrix& mass, const FieldView& loads)
+{
+  Field out(loads.rows(), loads.cols());
+  for (Eigen::Index c = 0; c < loads.rows(); ++c) {
+    Eigen::VectorXd rhs = loads.row(c).transpose();
+    for (const auto node : mass.pinned) rhs[node] = 0.0;
+    out.row(c) = mass.factors->solve(rhs).transpose();
+  }
+  return out;
+}
+
+Field recover(const MassMatrix& target_mass, const FieldView& loads, Recovery recovery)
+{
+  if (recovery == Recovery::consistent) return solve(target_mass, loads);
+  Field out = Field::Zero(loads.rows(), loads.cols());
+  std::size_t next = 0;
+  for (Eigen::Index j = 0; j < loads.cols(); ++j) {
+    if (next < target_mass.pinned.size() && target_mass.pinned[next] == j) ++next;
+    else out.col(j) = loads.col(j) / target_mass.row_sums[j];
+  }
+  return out;
+}
+
+Field adjoint_motion(const Operator& load_operator, const MassMatrix& source_mass, const FieldView& target_motion)
+{
+  return solve(source_mass, apply_transposed(load_operator, target_motion));
+}
+
+Field loads_from_loads(const Operator& load_operator, const MassMatrix& source_mass, const FieldView& source_loads)
+{
+  return apply(load_operator, solve(source_mass, source_loads));
+}
+
+Field loads_from_face_forces(const Operator& load_operator, const SurfaceMesh& source, const FieldView& face_forces)
+{
+  Field traction = Field::Zero(face_forces.rows(), face_forces.cols());
+  for (Eigen::Index f = 0; f < face_forces.cols(); ++f)
+    if (const double measure = face_measure(source, f); measure > 0.0) traction.col(f) = face_forces.col(f) / measure;
+  return apply(load_operator, traction);
+}
+
+} // namespace mullion::surface
