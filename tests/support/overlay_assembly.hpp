@@ -54,6 +54,20 @@ inline double polygon_area(const surface::SurfaceMesh& mesh, std::int32_t face, 
   return 0.5 * twice;
 }
 
+/// Local coordinates of the weighted mean of three vertices of a piece. In a quadrilateral the mean of the places is
+/// not at the mean of the local coordinates.
+inline void local_of_mean(const surface::SurfaceMesh& mesh, std::int32_t face, const double (&corner_xi)[3][2],
+                          const double (&weights)[3], double (&local)[2])
+{
+  local[0] = local[1] = 0.0;
+  surface::Point x = surface::Point::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t c = 0; c < 2; ++c) local[c] += weights[k] * corner_xi[k][c];
+    x += weights[k] * surface::map_to_space(mesh, face, corner_xi[k]);
+  }
+  if (mesh.face(face).size() == 4) surface::invert_quadrilateral(mesh, face, x, local);
+}
+
 inline OverlayMatrices assemble(const surface::SurfaceMesh& source, const surface::SurfaceMesh& target,
                                 const surface::SurfaceOverlayOptions& options = {})
 {
@@ -86,17 +100,20 @@ inline OverlayMatrices assemble(const surface::SurfaceMesh& source, const surfac
       m.is_finite_and_inside = m.is_finite_and_inside && is_inside(source, piece.source_face, piece.source_xi[k]) &&
                                is_inside(target, piece.target_face, piece.target_xi[k]);
     for (int k = 1; k + 1 < piece.n_vertices; ++k) {
-      const int corners[3] = {0, k, k + 1};
-      const double corner_xi[3][2] = {{piece.source_xi[0][0], piece.source_xi[0][1]},
-                                      {piece.source_xi[k][0], piece.source_xi[k][1]},
-                                      {piece.source_xi[k + 1][0], piece.source_xi[k + 1][1]}};
-      const double area = scale * polygon_area(source, piece.source_face, corner_xi, 3);
+      double in_source[3][2], in_target[3][2];
+      for (int corner = 0; corner < 3; ++corner)
+        for (int c = 0; c < 2; ++c) {
+          const int vertex = corner == 0 ? 0 : k + corner - 1;
+          in_source[corner][c] = piece.source_xi[vertex][c];
+          in_target[corner][c] = piece.target_xi[vertex][c];
+        }
+      const double area = scale * polygon_area(source, piece.source_face, in_source, 3);
       for (const auto& point : triangle_points) {
-        double in_source[2], in_target[2];
-        interpolate_local(source, piece.source_face, piece.source_xi, corners, point.b, in_source);
-        interpolate_local(target, piece.target_face, piece.target_xi, corners, point.b, in_target);
-        const auto n_f = surface::shape_values(source_nodes.size(), in_source);
-        const auto n_s = surface::shape_values(target_nodes.size(), in_target);
+        double source_xi[2], target_xi[2];
+        local_of_mean(source, piece.source_face, in_source, point.b, source_xi);
+        local_of_mean(target, piece.target_face, in_target, point.b, target_xi);
+        const auto n_f = surface::shape_values(source_nodes.size(), source_xi);
+        const auto n_s = surface::shape_values(target_nodes.size(), target_xi);
         const double w = area * point.weight;
         for (std::size_t j = 0; j < target_nodes.size(); ++j) {
           facial.emplace_back(target_nodes[j], piece.source_face, w * n_s[j]);

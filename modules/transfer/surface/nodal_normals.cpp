@@ -1,6 +1,6 @@
 #include "nodal_normals.hpp"
 
-#include <Eigen/Geometry>
+#include "plane_face.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +15,6 @@ namespace {
 constexpr double smooth_cosine = 0.9; // below: an edge between faces, not curvature
 constexpr double same_side_cosine = 0.5;
 
-Point place(const SurfaceMesh& mesh, std::int32_t node)
-{
-  return Point::Map(mesh.nodes.data() + 3 * std::int64_t{node});
-}
-
 /// The two edges that leave a corner of a face: to the next node, to the previous one.
 struct CornerEdges {
   Point next, previous;
@@ -28,8 +23,8 @@ struct CornerEdges {
 CornerEdges edges_at(const SurfaceMesh& mesh, std::span<const std::int32_t> face, std::size_t k)
 {
   const std::size_t n = face.size();
-  const Point x = place(mesh, face[k]);
-  return {place(mesh, face[(k + 1) % n]) - x, place(mesh, face[(k + n - 1) % n]) - x};
+  const Point x = node_place(mesh, face[k]);
+  return {node_place(mesh, face[(k + 1) % n]) - x, node_place(mesh, face[(k + n - 1) % n]) - x};
 }
 
 Point unit_or_zero(const Point& v)
@@ -71,7 +66,7 @@ void join_seams(const SurfaceMesh& mesh, Eigen::Matrix3Xd& normals)
         for (auto j = begin; j != end; ++j) {
           const Point other = normals.col(j->second);
           const bool is_same_place =
-              (place(mesh, i->second) - place(mesh, j->second)).lpNorm<Eigen::Infinity>() <= 1e-12 * extent;
+              (node_place(mesh, i->second) - node_place(mesh, j->second)).lpNorm<Eigen::Infinity>() <= 1e-12 * extent;
           if (i == j || (is_same_place && own.dot(other) > same_side_cosine)) sum += other;
         }
         joint.push_back(unit_or_zero(sum));

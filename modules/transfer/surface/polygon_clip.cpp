@@ -27,11 +27,19 @@ void erase(ClipPolygon& polygon, int k)
 
 } // namespace
 
-HalfPlane left_of(double p_x, double p_y, double q_x, double q_y)
+bool is_convex(const PlaneCorners& c)
 {
-  const double length = std::hypot(q_x - p_x, q_y - p_y);
-  const double a = (p_y - q_y) / length, b = (q_x - p_x) / length;
-  return {a, b, -(a * p_x + b * p_y)};
+  return turn(c[3], c[0], c[1]) >= 0.0 && turn(c[0], c[1], c[2]) >= 0.0 && turn(c[1], c[2], c[3]) >= 0.0 &&
+         turn(c[2], c[3], c[0]) >= 0.0;
+}
+
+bool is_cut_from_1_to_3(const PlaneCorners& c) { return turn(c[0], c[1], c[2]) < 0.0 || turn(c[2], c[3], c[0]) < 0.0; }
+
+HalfPlane left_of(const PlanePoint& p, const PlanePoint& q)
+{
+  const double length = std::hypot(q[0] - p[0], q[1] - p[1]);
+  const double a = (p[1] - q[1]) / length, b = (q[0] - p[0]) / length;
+  return {a, b, -(a * p[0] + b * p[1])};
 }
 
 void clip(ClipPolygon& polygon, const HalfPlane& side)
@@ -99,7 +107,7 @@ void simplify(ClipPolygon& polygon, double tolerance, int max_vertices)
   }
 }
 
-std::array<double, 2> inverse_bilinear(const std::array<std::array<double, 2>, 4>& corners, double p_x, double p_y)
+PlanePoint inverse_bilinear(const PlaneCorners& corners, const PlanePoint& point)
 {
   struct Vector {
     double x, y;
@@ -107,7 +115,7 @@ std::array<double, 2> inverse_bilinear(const std::array<std::array<double, 2>, 4
   const auto cross = [](Vector a, Vector b) { return a.x * b.y - a.y * b.x; };
   const auto& [c0, c1, c2, c3] = corners;
   const Vector e{c1[0] - c0[0], c1[1] - c0[1]}, f{c3[0] - c0[0], c3[1] - c0[1]};
-  const Vector g{c2[0] - c1[0] - f.x, c2[1] - c1[1] - f.y}, p{p_x - c0[0], p_y - c0[1]};
+  const Vector g{c2[0] - c1[0] - f.x, c2[1] - c1[1] - f.y}, p{point[0] - c0[0], point[1] - c0[1]};
 
   const double k2 = cross(g, f), k1 = cross(e, f) + cross(p, g), k0 = cross(p, e);
   const double root = std::sqrt(std::max(0.0, k1 * k1 - 4.0 * k0 * k2));

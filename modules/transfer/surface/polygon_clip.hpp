@@ -6,6 +6,25 @@
 
 namespace mullion::surface {
 
+/// A place in a plane.
+using PlanePoint = std::array<double, 2>;
+
+/// Corners of a triangle (the fourth one is not used) or a quadrilateral in a plane.
+using PlaneCorners = std::array<PlanePoint, 4>;
+
+/// Twice the area of the triangle a b c: positive if it runs counterclockwise.
+[[nodiscard]] inline double turn(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c)
+{
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/// Whether a quadrilateral runs counterclockwise and none of its corners points inwards.
+[[nodiscard]] bool is_convex(const PlaneCorners& corners);
+
+/// Whether a quadrilateral that is not convex lies on both sides of the diagonal from corner 1 to 3, so that it has to
+/// be cut there; else it is cut from 0 to 2.
+[[nodiscard]] bool is_cut_from_1_to_3(const PlaneCorners& corners);
+
 /// A vertex of a polygon: its place in the plane, and what is carried along linearly.
 struct ClipVertex {
   double x, y;    ///< place in the plane
@@ -29,7 +48,7 @@ struct HalfPlane {
 };
 
 /// The points left of the line from p to q; its value is then a distance. @pre p and q differ
-[[nodiscard]] HalfPlane left_of(double p_x, double p_y, double q_x, double q_y);
+[[nodiscard]] HalfPlane left_of(const PlanePoint& p, const PlanePoint& q);
 
 /// Cut off what lies outside (Sutherland & Hodgman 1974). Vertices on the line stay.
 ///
@@ -50,7 +69,6 @@ void simplify(ClipPolygon& polygon, double tolerance, int max_vertices);
 ///
 /// In closed form: the root at which the Jacobian is positive.
 /// @pre  the corners are convex and counterclockwise, p lies inside or, by round-off, just outside
-[[nodiscard]] std::array<double, 2> inverse_bilinear(const std::array<std::array<double, 2>, 4>& corners, double p_x,
-                                                     double p_y);
+[[nodiscard]] PlanePoint inverse_bilinear(const PlaneCorners& corners, const PlanePoint& p);
 
 } // namespace mullion::surface

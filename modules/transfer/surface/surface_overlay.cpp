@@ -2,10 +2,8 @@
 
 #include "aabb_tree.hpp"
 #include "nodal_normals.hpp"
+#include "plane_face.hpp"
 #include "polygon_clip.hpp"
-#include "shape_functions.hpp"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -15,175 +13,14 @@ namespace mullion::surface {
 
 namespace {
 
-constexpr double least_cosine = 0.2;        // of the angle between the normals of two faces that may be a pair
-constexpr double least_slope = 0.5;         // of a nodal normal out of the plane; below: the plane's own normal
-constexpr double largest_warp = 0.98480775; // cosine of 10 degrees
-constexpr double near_share = 0.1;          // of a face's size: how far the first search goes
-constexpr double sideways_share = 0.3;      // of the search's distance, along the plane: normals lean
-constexpr double piece_tolerance = 1e-14;   // of the smaller face's squared length: round-off of an area
-constexpr double vertex_tolerance = 1e-14;  // of the smaller face's length: round-off of a place
+constexpr double least_cosine = 0.2;       // of the angle between the normals of two faces that may be a pair
+constexpr double least_slope = 0.5;        // of a nodal normal out of the plane; below: the plane's own normal
+constexpr double near_share = 0.1;         // of a face's size: how far the first search goes
+constexpr double sideways_share = 0.3;     // of the search's distance, along the plane: normals lean
+constexpr double piece_tolerance = 1e-14;  // of the smaller face's squared length: round-off of an area
+constexpr double vertex_tolerance = 1e-14; // of the smaller face's length: round-off of a place
 constexpr double full_coverage = 1.0 - 1e-9;
 constexpr double least_coverage = 1e-6; // below: the noise of neighbours, no counterpart
-
-using Plane2 = std::array<double, 2>;
-using Corners = std::array<Plane2, 4>;
-
-Point place(const SurfaceMesh& mesh, std::int32_t node)
-{
-  return Point::Map(mesh.nodes.data() + 3 * std::int64_t{node});
-}
-
-/// A plane with coordinates in it.
-struct Frame {
-  Point origin, x, y, normal;
-
-  [[nodiscard]] Plane2 coordinates(const Point& p) const { return {(p - origin).dot(x), (p - origin).dot(y)}; }
-  [[nodiscard]] Point position(double a, double b) const { return origin + a * x + b * y; }
-};
-
-Frame frame_of(const Point& origin, const Point& towards, const Point& normal)
-{
-  const Point in_plane = (towards - origin) - (towards - origin).dot(normal) * normal;
-  const Point x = in_plane.normalized();
-  return {origin, x, normal.cross(x), normal};
-}
-
-double cross(const Plane2& a, const Plane2& b, const Plane2& c)
-{
-  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-bool is_convex(const Corners& c)
-{
-  return cross(c[3], c[0], c[1]) >= 0.0 && cross(c[0], c[1], c[2]) >= 0.0 && cross(c[1], c[2], c[3]) >= 0.0 &&
-         cross(c[2], c[3], c[0]) >= 0.0;
-}
-
-constexpr Corners corner_of_quadrilateral = {{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}};
-constexpr Corners corner_of_triangle = {{{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {0.0, 0.0}}};
-
-/// A convex polygon that a source face, or half of it, is in its plane.
-struct Part {
-  Frame frame;
-  int n = 0;
-  Corners corner{};                  ///< in the plane, counterclockwise
-  Corners local{};                   ///< local coordinates of the corners in the face
-  std::array<HalfPlane, 4> inside{}; ///< left of each edge
-  double area = 0.0;
-};
-
-struct SourceFace {
-  int n_parts = 0;
-  std::array<Part, 2> parts{};
-  bool is_bilinear = false; ///< local coordinates are found in the mean plane
-  Frame mean{};
-  Corners corner{}; ///< in the mean plane, if bilinear
-  Point lo, hi;     ///< its box
-  double length = 0.0;
-};
-
-Part part_of(const Frame& frame, std::span<const Point> corners, std::span<const Plane2> local)
-{
-  Part part;
-  part.frame = frame;
-  part.n = static_cast<int>(corners.size());
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    part.corner[k] = frame.coordinates(corners[k]);
-    part.local[k] = local[k];
-  }
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    const auto &p = part.corner[k], &q = part.corner[(k + 1) % corners.size()];
-    part.inside[k] = left_of(p[0], p[1], q[0], q[1]);
-  }
-  part.area = 0.5 * cross(part.corner[0], part.corner[1], part.corner[2]);
-  if (part.n == 4) part.area += 0.5 * cross(part.corner[0], part.corner[2], part.corner[3]);
-  return part;
-}
-
-Part triangular_part(const Point& a, const Point& b, const Point& c, const Plane2& at_a, const Plane2& at_b,
-                     const Plane2& at_c)
-{
-  const std::array<Point, 3> corners = {a, b, c};
-  const std::array<Plane2, 3> local = {at_a, at_b, at_c};
-  return part_of(frame_of(a, b, (b - a).cross(c - a).normalized()), corners, local);
-}
-
-SourceFace source_face(const SurfaceMesh& mesh, std::int32_t f)
-{
-  SourceFace face;
-  const auto nodes = mesh.face(f);
-  const std::size_t n = nodes.size();
-  std::array<Point, 4> x;
-  x.fill(Point::Zero());
-  for (std::size_t k = 0; k < n; ++k) x[k] = place(mesh, nodes[k]);
-  face.lo = face.hi = x[0];
-  for (std::size_t k = 1; k < n; ++k) {
-    face.lo = face.lo.cwiseMin(x[k]);
-    face.hi = face.hi.cwiseMax(x[k]);
-  }
-  for (std::size_t k = 0; k < n; ++k) face.length = std::max(face.length, (x[(k + 1) % n] - x[k]).norm());
-
-  const auto& at = n == 3 ? corner_of_triangle : corner_of_quadrilateral;
-  const double least_area = piece_tolerance * face.length * face.length;
-  const auto add_triangle = [&](std::size_t a, std::size_t b, std::size_t c) {
-    if ((x[b] - x[a]).cross(x[c] - x[a]).norm() > least_area)
-      face.parts[static_cast<std::size_t>(face.n_parts++)] = triangular_part(x[a], x[b], x[c], at[a], at[b], at[c]);
-  };
-  if (n == 3) {
-    add_triangle(0, 1, 2);
-    return face;
-  }
-
-  const Point of_diagonals = (x[2] - x[0]).cross(x[3] - x[1]);
-  if (of_diagonals.norm() <= least_area) return face;
-  const Point normal = of_diagonals.normalized();
-  face.mean = frame_of(0.25 * (x[0] + x[1] + x[2] + x[3]), x[2], normal);
-  for (std::size_t k = 0; k < 4; ++k) face.corner[k] = face.mean.coordinates(x[k]);
-  face.is_bilinear = is_convex(face.corner);
-  double warp = 1.0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Point at_corner = (x[(k + 1) % 4] - x[k]).cross(x[(k + 3) % 4] - x[k]);
-    warp = std::min(warp, at_corner.dot(normal) / std::max(at_corner.norm(), 1e-300)); // 0 / tiny at a flat corner
-    if (at_corner.squaredNorm() <= 1e-24 * std::pow(face.length, 4)) warp = 1.0;
-  }
-  if (face.is_bilinear && warp >= largest_warp) {
-    face.n_parts = 1;
-    face.parts[0] = part_of(face.mean, x, at);
-    return face;
-  }
-  // By halves; a corner that points inwards has to be on the diagonal.
-  const bool other_diagonal = cross(face.corner[0], face.corner[1], face.corner[2]) < 0.0 ||
-                              cross(face.corner[2], face.corner[3], face.corner[0]) < 0.0;
-  if (other_diagonal) {
-    add_triangle(1, 2, 3);
-    add_triangle(1, 3, 0);
-  } else {
-    add_triangle(0, 1, 2);
-    add_triangle(0, 2, 3);
-  }
-  return face;
-}
-
-/// Local coordinates in the source face of a point in the plane of one of its parts.
-Plane2 source_local(const SourceFace& face, const Part& part, double a, double b)
-{
-  if (face.is_bilinear && face.n_parts == 1) return inverse_bilinear(face.corner, a, b);
-  if (face.is_bilinear) {
-    const auto [u, v] = face.mean.coordinates(part.frame.position(a, b));
-    return inverse_bilinear(face.corner, u, v);
-  }
-  std::array<double, 3> share; // barycentric coordinates: distances from the opposite edges over the heights
-  double sum = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const HalfPlane& opposite_edge = part.inside[(k + 1) % 3];
-    share[k] = std::max(0.0, opposite_edge(a, b) / opposite_edge(part.corner[k][0], part.corner[k][1]));
-    sum += share[k];
-  }
-  Plane2 local = {0.0, 0.0};
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t c = 0; c < 2; ++c) local[c] += share[k] / sum * part.local[k][c];
-  return local;
-}
 
 /// What the overlay needs to know of the target.
 struct Target {
@@ -193,20 +30,13 @@ struct Target {
   bool is_opposite = false;
 };
 
-/// Twice the area times the normal; of a quadrilateral in its mean plane.
-Point twice_area_vector(const SurfaceMesh& mesh, std::int32_t f)
-{
-  const auto nodes = mesh.face(f);
-  const auto x = [&](std::size_t k) { return place(mesh, nodes[k]); };
-  return nodes.size() == 3 ? (x(1) - x(0)).cross(x(2) - x(0)) : (x(2) - x(0)).cross(x(3) - x(1));
-}
-
 double longest_edge(const SurfaceMesh& mesh, std::int32_t f)
 {
   const auto nodes = mesh.face(f);
   double square = 0.0;
   for (std::size_t k = 0; k < nodes.size(); ++k)
-    square = std::max(square, (place(mesh, nodes[(k + 1) % nodes.size()]) - place(mesh, nodes[k])).squaredNorm());
+    square =
+        std::max(square, (node_place(mesh, nodes[(k + 1) % nodes.size()]) - node_place(mesh, nodes[k])).squaredNorm());
   return std::sqrt(square);
 }
 
@@ -214,7 +44,7 @@ double longest_edge(const SurfaceMesh& mesh, std::int32_t f)
 struct Image {
   int n = 0;
   std::array<ClipVertex, 4> vertex;
-  Corners corner{};      ///< the same places
+  PlaneCorners corner{}; ///< the same places
   bool is_convex = true; ///< always for a triangle
   double area = 0.0;
   double square = 0.0;      ///< of the longest edge
@@ -232,11 +62,11 @@ bool find_image(const Target& target, std::int32_t t, const Frame& plane, double
 
   const auto nodes = target.mesh.face(t);
   const std::size_t n = nodes.size();
-  const auto& local = n == 3 ? corner_of_triangle : corner_of_quadrilateral;
+  const auto& local = local_corners(n);
   double least = 1e300, largest = -1e300;
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t j = target.is_opposite ? (n - k) % n : k;
-    const Point x = place(target.mesh, nodes[j]);
+    const Point x = node_place(target.mesh, nodes[j]);
     Point along = target.normals.col(nodes[j]);
     double slope = plane.normal.dot(along);
     if (std::abs(slope) < least_slope) { // at trailing edges, say: a gap would move the point by more than its double
@@ -262,16 +92,16 @@ bool find_image(const Target& target, std::int32_t t, const Frame& plane, double
 
   const auto& c = image.corner;
   image.is_convex = n == 3 || is_convex(c);
-  image.area = 0.5 * cross(c[0], c[1], c[2]) + (n == 4 ? 0.5 * cross(c[0], c[2], c[3]) : 0.0);
+  image.area = 0.5 * turn(c[0], c[1], c[2]) + (n == 4 ? 0.5 * turn(c[0], c[2], c[3]) : 0.0);
   return image.area > piece_tolerance * image.square;
 }
 
 /// Local coordinates in the target face of a vertex of a polygon within its image.
-Plane2 target_local(const Image& image, bool is_opposite, const ClipVertex& vertex)
+PlanePoint target_local(const Image& image, bool is_opposite, const ClipVertex& vertex)
 {
   if (image.n == 4 && image.is_convex) {
-    const auto [xi, eta] = inverse_bilinear(image.corner, vertex.x, vertex.y);
-    return is_opposite ? Plane2{eta, xi} : Plane2{xi, eta}; // turned round, the corners are 0, 3, 2, 1
+    const auto [xi, eta] = inverse_bilinear(image.corner, {vertex.x, vertex.y});
+    return is_opposite ? PlanePoint{eta, xi} : PlanePoint{xi, eta}; // turned round, the corners are 0, 3, 2, 1
   }
   return {std::clamp(vertex.xi, 0.0, 1.0), std::clamp(vertex.eta, 0.0, 1.0)};
 }
@@ -285,8 +115,7 @@ int convex_polygons(const Image& image, std::array<ClipPolygon, 2>& polygons)
   };
   if (image.n == 3) return set(polygons[0], {0, 1, 2}), 1;
   if (image.is_convex) return set(polygons[0], {0, 1, 2, 3}), 1;
-  const auto& c = image.corner;
-  if (cross(c[0], c[1], c[2]) < 0.0 || cross(c[2], c[3], c[0]) < 0.0) {
+  if (is_cut_from_1_to_3(image.corner)) {
     set(polygons[0], {1, 2, 3});
     set(polygons[1], {1, 3, 0});
   } else {
@@ -322,10 +151,10 @@ BoxTree tree_of(const SurfaceMesh& mesh, const std::vector<std::int32_t>& degene
   for (std::int32_t f = 0; f < mesh.n_faces(); ++f) {
     if (std::binary_search(degenerate.begin(), degenerate.end(), f)) continue;
     const auto nodes = mesh.face(f);
-    BoxTree::Box box{place(mesh, nodes[0]), place(mesh, nodes[0])};
+    BoxTree::Box box{node_place(mesh, nodes[0]), node_place(mesh, nodes[0])};
     for (const auto node : nodes) {
-      box.lo = box.lo.cwiseMin(place(mesh, node));
-      box.hi = box.hi.cwiseMax(place(mesh, node));
+      box.lo = box.lo.cwiseMin(node_place(mesh, node));
+      box.hi = box.hi.cwiseMax(node_place(mesh, node));
     }
     const Point normal = twice_area_vector(mesh, f).normalized();
     const Point reach = near_share * longest_edge(mesh, f) * (normal.cwiseAbs().array() + sideways_share).matrix();
@@ -346,7 +175,7 @@ public:
 
   /// The pieces of a source face; returns its coverage. Looks farther as long as the face is not covered, and keeps
   /// what covers it best: what lies near is not mixed with another layer behind it.
-  double overlay(std::int32_t f, const SourceFace& face)
+  double overlay(std::int32_t f, const PlaneFace& face)
   {
     double best_reach = near_share * face.length, reach = best_reach;
     double best = search(f, face, reach), coverage = best;
@@ -361,40 +190,7 @@ public:
     return best_reach == reach ? coverage : search(f, face, best_reach);
   }
 
-  /// Instead: triangles that go to one point of the target each.
-  void attach(std::int32_t f)
-  {
-    pieces_.clear();
-    const auto nodes = source_.face(f);
-    const std::size_t n = nodes.size();
-    const auto& at = n == 3 ? corner_of_triangle : corner_of_quadrilateral;
-    const double middle = n == 3 ? 1.0 / 3.0 : 0.5;
-    const Point centre = face_centre(source_, f);
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::size_t l = (k + 1) % n;
-      const Point x = (centre + place(source_, nodes[k]) + place(source_, nodes[l])) / 3.0;
-      const auto t = target_.tree.closest(x, [&](std::int32_t number) {
-        const double distance = closest_on_face(target_.mesh, number, x).distance;
-        return distance * distance;
-      });
-      if (t < 0) return;
-      const auto closest = closest_on_face(target_.mesh, t, x);
-      Subelement& piece = pieces_.emplace_back();
-      piece.source_face = f;
-      piece.target_face = t;
-      piece.n_vertices = 3;
-      const std::array<Plane2, 3> corners = {{{middle, middle}, at[k], at[l]}};
-      for (std::size_t v = 0; v < 3; ++v)
-        for (std::size_t c = 0; c < 2; ++c) {
-          piece.source_xi[v][c] = corners[v][c];
-          piece.target_xi[v][c] = closest.xi[c];
-        }
-    }
-    std::stable_sort(pieces_.begin(), pieces_.end(),
-                     [](const auto& a, const auto& b) { return a.target_face < b.target_face; });
-  }
-
-  /// What the last call of overlay() or attach() found.
+  /// What the last call of overlay() found.
   [[nodiscard]] const std::vector<Subelement>& pieces() const { return pieces_; }
 
   /// Count the pieces of overlay() in.
@@ -410,14 +206,14 @@ public:
   [[nodiscard]] const std::vector<std::uint8_t>& is_reached() const { return is_reached_; }
 
 private:
-  double search(std::int32_t f, const SourceFace& face, double reach)
+  double search(std::int32_t f, const PlaneFace& face, double reach)
   {
     pieces_.clear();
     gap_of_face_ = target_area_of_face_ = 0.0;
     Point leaning = Point::Zero();
     double area = 0.0, covered = 0.0;
     for (int p = 0; p < face.n_parts; ++p) {
-      const Part& part = face.parts[static_cast<std::size_t>(p)];
+      const FacePart& part = face.parts[static_cast<std::size_t>(p)];
       leaning = leaning.cwiseMax(part.frame.normal.cwiseAbs());
       area += part.area;
     }
@@ -428,7 +224,7 @@ private:
 
     for (const auto t : candidates_)
       for (int p = 0; p < face.n_parts; ++p) {
-        const Part& part = face.parts[static_cast<std::size_t>(p)];
+        const FacePart& part = face.parts[static_cast<std::size_t>(p)];
         Image image;
         if (!find_image(target_, t, part.frame, (1.0 + sideways_share) * reach, gap_tolerance_, image)) continue;
         const double square = std::min(face.length * face.length, image.square);
@@ -441,7 +237,7 @@ private:
   }
 
   /// The piece that a polygon of the image and a part of the source face have in common; returns its area.
-  double cut(std::int32_t f, std::int32_t t, const SourceFace& face, const Part& part, const Image& image,
+  double cut(std::int32_t f, std::int32_t t, const PlaneFace& face, const FacePart& part, const Image& image,
              double square, ClipPolygon& polygon)
   {
     for (int k = 0; k < part.n && polygon.n > 0; ++k) clip(polygon, part.inside[static_cast<std::size_t>(k)]);
@@ -456,7 +252,7 @@ private:
     piece.n_vertices = polygon.n;
     for (int v = 0; v < polygon.n; ++v) {
       const ClipVertex& vertex = polygon.vertices[static_cast<std::size_t>(v)];
-      const auto in_source = source_local(face, part, vertex.x, vertex.y);
+      const auto in_source = local_coordinates(face, part, {vertex.x, vertex.y});
       const auto in_target = target_local(image, target_.is_opposite, vertex);
       for (std::size_t c = 0; c < 2; ++c) {
         piece.source_xi[v][c] = in_source[c];
@@ -499,7 +295,7 @@ OverlayReport overlay_surfaces(const SurfaceMesh& source, const SurfaceMesh& tar
   bool is_first = true;
   for (std::int32_t f = 0; f < source.n_faces(); ++f) {
     const bool is_degenerate = std::binary_search(degenerate_source.begin(), degenerate_source.end(), f);
-    const SourceFace face = is_degenerate ? SourceFace{} : source_face(source, f);
+    const PlaneFace face = is_degenerate ? PlaneFace{} : plane_face(source, f);
     if (face.n_parts == 0) {
       report.skipped_source_faces.add(f);
       continue;
@@ -509,13 +305,11 @@ OverlayReport overlay_surfaces(const SurfaceMesh& source, const SurfaceMesh& tar
     if (coverage < least_coverage) {
       coverage = 0.0;
       report.uncovered_faces.add(f);
-      if (options.attach_uncovered) overlay.attach(f);
     } else {
-      overlay.accept();
       if (coverage < full_coverage) report.partly_covered_faces.add(f);
-    }
-    if (coverage > 0.0 || options.attach_uncovered)
+      overlay.accept();
       for (const auto& piece : overlay.pieces()) sink(piece);
+    }
     report.min_coverage = is_first ? coverage : std::min(report.min_coverage, coverage);
     report.max_coverage = is_first ? coverage : std::max(report.max_coverage, coverage);
     is_first = false;
@@ -530,24 +324,6 @@ OverlayReport overlay_surfaces(const SurfaceMesh& source, const SurfaceMesh& tar
   for (std::int32_t i = 0; i < target.n_nodes(); ++i)
     if (overlay.is_reached()[static_cast<std::size_t>(i)] == 0) report.unmatched_target_nodes.add(i);
   return report;
-}
-
-void interpolate_local(const SurfaceMesh& mesh, std::int32_t face, const double (*xi)[2], const int (&vertices)[3],
-                       const double (&weights)[3], double (&local)[2])
-{
-  local[0] = local[1] = 0.0;
-  for (std::size_t k = 0; k < 3; ++k)
-    for (std::size_t c = 0; c < 2; ++c) local[c] += weights[k] * xi[vertices[k]][c];
-  if (mesh.face(face).size() != 4) return;
-
-  Point x = Point::Zero();
-  for (std::size_t k = 0; k < 3; ++k) x += weights[k] * map_to_space(mesh, face, xi[vertices[k]]);
-  double inverted[2] = {local[0], local[1]};
-  invert_quadrilateral(mesh, face, x, inverted);
-  for (std::size_t c = 0; c < 2; ++c)
-    if (inverted[c] >= -1e-9 && inverted[c] <= 1.0 + 1e-9) continue; // round-off
-    else return; // a corner that points inwards: there is no unique answer, the mean is one
-  for (std::size_t c = 0; c < 2; ++c) local[c] = std::clamp(inverted[c], 0.0, 1.0);
 }
 
 } // namespace mullion::surface

@@ -12,7 +12,6 @@ namespace mullion::surface {
 struct SurfaceOverlayOptions {
   double gap_tolerance = 0.0;   ///< largest distance of paired points [m]; 0: twice the larger mean face size
   std::optional<bool> opposite; ///< the sides' normals point against each other; not given: found, see below
-  bool attach_uncovered = true; ///< source faces without a counterpart go to the closest points of the target
 };
 
 /// Overlay two surfaces and hand out the pieces, source face by source face.
@@ -52,17 +51,5 @@ struct SurfaceOverlayOptions {
 ///                        source faces are uncovered and nothing is handed out
 OverlayReport overlay_surfaces(const SurfaceMesh& source, const SurfaceMesh& target,
                                const SurfaceOverlayOptions& options, const SubelementSink& sink);
-
-/// Local coordinates of the point that is the weighted mean of some vertices of a piece, in one of its parents.
-///
-/// For a triangle the weighted mean of the vertices' local coordinates. For a quadrilateral the bilinear map is
-/// inverted at the mean of the vertices' positions: the mean of the coordinates would be another point by the
-/// distortion of the face times its size, and linear fields would not be reproduced.
-///
-/// @param vertices  numbers of the three vertices; @param weights  of these, with sum 1
-/// @param xi        source_xi or target_xi of the piece
-/// @param local     result (xi, eta)
-void interpolate_local(const SurfaceMesh& mesh, std::int32_t face, const double (*xi)[2], const int (&vertices)[3],
-                       const double (&weights)[3], double (&local)[2]);
 
 } // namespace mullion::surface
