@@ -99,6 +99,8 @@ inline OverlayMatrices assemble(const surface::SurfaceMesh& source, const surfac
     for (int k = 0; k < piece.n_vertices; ++k)
       m.is_finite_and_inside = m.is_finite_and_inside && is_inside(source, piece.source_face, piece.source_xi[k]) &&
                                is_inside(target, piece.target_face, piece.target_xi[k]);
+    Eigen::Matrix4d sf = Eigen::Matrix4d::Zero(), ss = sf, ff = sf; // integrals over the piece, (target x source) first
+    Eigen::Vector4d s = Eigen::Vector4d::Zero();
     for (int k = 1; k + 1 < piece.n_vertices; ++k) {
       double in_source[3][2], in_target[3][2];
       for (int corner = 0; corner < 3; ++corner)
@@ -112,21 +114,26 @@ inline OverlayMatrices assemble(const surface::SurfaceMesh& source, const surfac
         double source_xi[2], target_xi[2];
         local_of_mean(source, piece.source_face, in_source, point.b, source_xi);
         local_of_mean(target, piece.target_face, in_target, point.b, target_xi);
-        const auto n_f = surface::shape_values(source_nodes.size(), source_xi);
-        const auto n_s = surface::shape_values(target_nodes.size(), target_xi);
+        const auto f_values = surface::shape_values(source_nodes.size(), source_xi);
+        const auto s_values = surface::shape_values(target_nodes.size(), target_xi);
+        const Eigen::Vector4d n_f = Eigen::Vector4d::Map(f_values.data()), n_s = Eigen::Vector4d::Map(s_values.data());
         const double w = area * point.weight;
-        for (std::size_t j = 0; j < target_nodes.size(); ++j) {
-          facial.emplace_back(target_nodes[j], piece.source_face, w * n_s[j]);
-          for (std::size_t i = 0; i < source_nodes.size(); ++i)
-            nodal.emplace_back(target_nodes[j], source_nodes[i], w * n_s[j] * n_f[i]);
-          for (std::size_t i = 0; i < target_nodes.size(); ++i)
-            target_mass.emplace_back(target_nodes[j], target_nodes[i], w * n_s[j] * n_s[i]);
-        }
-        for (std::size_t j = 0; j < source_nodes.size(); ++j)
-          for (std::size_t i = 0; i < source_nodes.size(); ++i)
-            source_mass.emplace_back(source_nodes[j], source_nodes[i], w * n_f[j] * n_f[i]);
+        sf += w * n_s * n_f.transpose();
+        ss += w * n_s * n_s.transpose();
+        ff += w * n_f * n_f.transpose();
+        s += w * n_s;
       }
     }
+    const auto add = [](auto& entries, auto rows, auto columns, const Eigen::Matrix4d& values) {
+      for (std::size_t j = 0; j < rows.size(); ++j)
+        for (std::size_t i = 0; i < columns.size(); ++i)
+          entries.emplace_back(rows[j], columns[i], values(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(i)));
+    };
+    add(nodal, target_nodes, source_nodes, sf);
+    add(target_mass, target_nodes, target_nodes, ss);
+    add(source_mass, source_nodes, source_nodes, ff);
+    for (std::size_t j = 0; j < target_nodes.size(); ++j)
+      facial.emplace_back(target_nodes[j], piece.source_face, s[static_cast<Eigen::Index>(j)]);
   }
   const auto n_s = target.n_nodes(), n_f = source.n_nodes();
   const auto fill = [](Sparse& matrix, std::int64_t rows, std::int64_t columns, const auto& entries) {

@@ -4,6 +4,8 @@
 
 #include "surface/surface_mesh.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -43,29 +45,54 @@ struct Grid {
   Faces faces = Faces::triangles;
   double shift = 0.0; ///< largest random shift of a node, in cells; boundary nodes stay on the boundary
   unsigned seed = 0;
+  int refine = 1; ///< every cell is cut evenly into refine x refine, after the shift: the shapes of the faces stay
 };
 
-/// (n_u + 1)(n_v + 1) nodes; triangles are cut along a random diagonal, mixed cells are cut or not at random.
+/// Cells of triangles are cut along a random diagonal, mixed cells are cut or not at random, all parts of a refined
+/// cell alike.
 inline SurfaceMesh grid_on(const SurfaceMap& map, const Grid& grid)
 {
   std::mt19937 random(grid.seed);
   const auto uniform = [&] { return 2.0 * (static_cast<double>(random()) / 4294967296.0) - 1.0; };
-  SurfaceMesh mesh;
-  mesh.nodes.resize(3, (grid.n_u + 1) * (grid.n_v + 1));
+  std::vector<std::array<double, 2>> base; // parameters of the cells' corners
   for (int j = 0; j <= grid.n_v; ++j)
     for (int i = 0; i <= grid.n_u; ++i) {
       const double du = grid.shift * uniform(), dv = grid.shift * uniform();
-      const double u = (i + (i > 0 && i < grid.n_u ? du : 0.0)) / grid.n_u;
-      const double v = (j + (j > 0 && j < grid.n_v ? dv : 0.0)) / grid.n_v;
-      mesh.nodes.col(j * (grid.n_u + 1) + i) = map(u, v);
+      base.push_back(
+          {(i + (i > 0 && i < grid.n_u ? du : 0.0)) / grid.n_u, (j + (j > 0 && j < grid.n_v ? dv : 0.0)) / grid.n_v});
     }
-  for (int j = 0; j < grid.n_v; ++j)
-    for (int i = 0; i < grid.n_u; ++i) {
-      const std::int32_t a = j * (grid.n_u + 1) + i, b = a + 1, c = b + grid.n_u + 1, d = c - 1;
-      const bool is_cut = grid.faces == Faces::triangles || (grid.faces == Faces::mixed && uniform() > 0.0);
-      const bool is_other = uniform() > 0.0;
-      if (!is_cut) add_face(mesh, {a, b, c, d});
-      else if (is_other) add_face(mesh, {a, b, c}), add_face(mesh, {a, c, d});
+  struct Cut {
+    bool is_cut, is_other_diagonal;
+  };
+  std::vector<Cut> cuts;
+  for (int cell = 0; cell < grid.n_u * grid.n_v; ++cell) {
+    const bool is_cut = grid.faces == Faces::triangles || (grid.faces == Faces::mixed && uniform() > 0.0);
+    cuts.push_back({is_cut, uniform() > 0.0});
+  }
+
+  const int r = grid.refine, n_u = r * grid.n_u, n_v = r * grid.n_v;
+  SurfaceMesh mesh;
+  mesh.nodes.resize(3, (n_u + 1) * (n_v + 1));
+  for (int j = 0; j <= n_v; ++j)
+    for (int i = 0; i <= n_u; ++i) {
+      const int cell_i = std::min(i / r, grid.n_u - 1), cell_j = std::min(j / r, grid.n_v - 1);
+      const double a = static_cast<double>(i) / r - cell_i, b = static_cast<double>(j) / r - cell_j;
+      std::array<double, 2> at = {0.0, 0.0};
+      for (std::size_t c = 0; c < 2; ++c) {
+        const auto corner = [&](int di, int dj) {
+          return base[static_cast<std::size_t>((cell_j + dj) * (grid.n_u + 1) + cell_i + di)][c];
+        };
+        at[c] = (1.0 - b) * ((1.0 - a) * corner(0, 0) + a * corner(1, 0)) +
+                b * ((1.0 - a) * corner(0, 1) + a * corner(1, 1));
+      }
+      mesh.nodes.col(j * (n_u + 1) + i) = map(at[0], at[1]);
+    }
+  for (int j = 0; j < n_v; ++j)
+    for (int i = 0; i < n_u; ++i) {
+      const std::int32_t a = j * (n_u + 1) + i, b = a + 1, c = b + n_u + 1, d = c - 1;
+      const Cut& cut = cuts[static_cast<std::size_t>((j / r) * grid.n_u + i / r)];
+      if (!cut.is_cut) add_face(mesh, {a, b, c, d});
+      else if (!cut.is_other_diagonal) add_face(mesh, {a, b, c}), add_face(mesh, {a, c, d});
       else add_face(mesh, {a, b, d}), add_face(mesh, {b, c, d});
     }
   return mesh;
