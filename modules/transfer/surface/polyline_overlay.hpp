@@ -20,8 +20,8 @@ struct PolylineOverlayOptions {
 /// Within a piece the local coordinates of both sides vary linearly. Every source face is covered once, from end to
 /// end: where the source reaches beyond the end of the target, its piece belongs to the target's end node (target
 /// coordinates equal at both ends), which keeps the force and spoils the traction there; the report counts it as not
-/// covered. Parts of the target that no source reaches get no piece. There are at most as many pieces as faces of
-/// both sides, but for faces that are visited twice by a source in several parts.
+/// covered. Parts of the target that no source reaches get no piece. Two chains of n and m faces give n + m + 1 pieces
+/// at most, n + m - 1 if their ends are the same.
 ///
 /// @param sink  gets the pieces by source face, by target face within, and in the source's direction within that
 /// @pre   complaint_about() == "" for both, dimension 2
