@@ -10,8 +10,9 @@
 namespace mullion::surface {
 
 struct SurfaceOverlayOptions {
-  double gap_tolerance = 0.0;   ///< largest distance of paired points [m]; 0: twice the larger mean face size
-  std::optional<bool> opposite; ///< the sides' normals point against each other; not given: found, see below
+  double gap_tolerance = 0.0; ///< largest distance of paired points [m]; 0: twice the larger mean face size
+  std::optional<bool> opposite =
+      std::nullopt; ///< the sides' normals point against each other; not given: found, see below
 };
 
 /// Overlay two surfaces and hand out the pieces, source face by source face.
