@@ -8,13 +8,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <utility>
+#include <vector>
 
 namespace mullion::surface {
 
 namespace {
 
 constexpr double least_cosine = 0.2;       // of the angle between the normals of two faces that may be a pair
-constexpr double near_share = 0.1;         // of a face's size: how far the first search goes
+constexpr double near_share = 0.1;         // of the faces' sizes: how far the first search goes
+constexpr double wider = 4.0;              // each next one
 constexpr double sideways_share = 0.3;     // of the search's distance, along the plane: normals lean
 constexpr double piece_tolerance = 1e-14;  // of the smaller face's squared length: round-off of an area
 constexpr double vertex_tolerance = 1e-14; // of the smaller face's length: round-off of a place
@@ -56,13 +62,13 @@ bool find_image(const Target& target, std::int32_t t, const Frame& plane, double
 {
   const Point area_vector = twice_area_vector(target.mesh, t);
   const double twice_area = area_vector.norm();
-  const double slope_of_face = plane.normal.dot(area_vector) / twice_area; // > 0: degenerate faces are not in the tree
+  const double slope_of_face = plane.normal.dot(area_vector) / twice_area; // the tree has no degenerate faces
   if ((target.is_opposite ? -slope_of_face : slope_of_face) < least_cosine) return false;
 
   const auto nodes = target.mesh.face(t);
   const std::size_t n = nodes.size();
   const auto& local = local_corners(n);
-  double least = 1e300, largest = -1e300;
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t j = target.is_opposite ? (n - k) % n : k;
     const auto [at, gap] = image_of_node(plane, node_place(target.mesh, nodes[j]), target.normals.col(nodes[j]));
@@ -171,7 +177,7 @@ public:
     double best_reach = near_share * face.length, reach = best_reach;
     double best = search(f, face, reach), coverage = best;
     while (coverage < full_coverage && reach < gap_tolerance_) {
-      reach = std::min(4.0 * reach, gap_tolerance_);
+      reach = std::min(wider * reach, gap_tolerance_);
       coverage = search(f, face, reach);
       if (std::abs(coverage - 1.0) < std::abs(best - 1.0)) {
         best = coverage;
