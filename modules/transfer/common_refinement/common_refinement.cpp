@@ -3,6 +3,7 @@
 // traction that the structure's space can hold arrives to round-off; force and, with adjoint motion, work are kept.
 #include "surface_transfer/surface_transfer.hpp"
 
+#include "surface/overlay_operators.hpp"
 #include "surface/polyline_overlay.hpp"
 #include "surface/surface_overlay.hpp"
 
@@ -39,29 +40,24 @@ public:
   explicit CommonRefinement(const Options& options) : SurfaceTransfer(options), options_(options) {}
 
 private:
-  [[nodiscard]] Pairing pair(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure) const override
+  [[nodiscard]] Pairing pair(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure,
+                             const surface_transfer::Wanted& wanted) const override
   {
-    using surface::Metric;
+    const auto metric = options_.metric == "source"   ? surface::Metric::source
+                        : options_.metric == "target" ? surface::Metric::target
+                                                      : surface::Metric::average;
+    const auto mass = options_.mass == "same" ? surface::MassMetric::same : surface::MassMetric::native;
+    surface::OverlayAssembly assembly(fluid, structure, wanted.location, metric, mass, wanted.fluid_mass);
+    const auto take = [&](const surface::Subelement& piece) { assembly.add(piece); };
     Pairing pairing;
-    std::vector<surface::Subelement> pieces;
-    const auto keep = [&](const surface::Subelement& piece) { pieces.push_back(piece); };
     if (fluid.dimension == 2) {
       surface::PolylineOverlayOptions overlay;
       overlay.feature_angle = options_.feature_angle * std::numbers::pi / 180.0;
-      pairing.report = surface::overlay_polylines(fluid, structure, overlay, keep);
+      pairing.report = surface::overlay_polylines(fluid, structure, overlay, take);
     } else {
-      pairing.report = surface::overlay_surfaces(fluid, structure, {}, keep);
+      pairing.report = surface::overlay_surfaces(fluid, structure, {}, take);
     }
-    const auto metric = options_.metric == "source"   ? Metric::source
-                        : options_.metric == "target" ? Metric::target
-                                                      : Metric::average;
-    const auto set = surface::points_of_overlay(fluid, structure, pieces, metric);
-    pairing.loads_of_nodes = surface::load_operator(fluid, structure, set.points, surface::Location::nodes);
-    pairing.loads_of_faces = surface::load_operator(fluid, structure, set.points, surface::Location::faces);
-    pairing.structure_mass =
-        options_.mass == "same" ? surface::target_mass(structure, set.points) : surface::native_mass(structure);
-    pairing.fluid_mass = surface::source_mass(fluid, set.points);
-    pairing.motion = surface::node_projection(fluid, structure, surface::FaceTree(structure, 0.0));
+    pairing.operators = assembly.finish(surface::FaceTree(structure, 0.0));
     return pairing;
   }
 

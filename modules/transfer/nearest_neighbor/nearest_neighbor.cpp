@@ -16,9 +16,12 @@ public:
   explicit NearestNeighbor(const Options& options) : SurfaceTransfer(options), options_(options) {}
 
 private:
-  [[nodiscard]] Pairing pair(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure) const override
+  [[nodiscard]] Pairing pair(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure,
+                             const surface_transfer::Wanted& wanted) const override
   {
-    return surface_transfer::pairing_by_nodes(fluid, structure, surface::nearest_nodes(fluid, structure));
+    const auto projection = surface::nearest_nodes(fluid, structure);
+    return {surface::operators_of_projection(fluid, structure, projection, wanted.location, wanted.fluid_mass),
+            surface_transfer::report_of_projection(fluid, structure, projection)};
   }
 
   Options options_;

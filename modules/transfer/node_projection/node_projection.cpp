@@ -17,10 +17,12 @@ public:
   explicit NodeProjection(const Options& options) : SurfaceTransfer(options), options_(options) {}
 
 private:
-  [[nodiscard]] Pairing pair(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure) const override
+  [[nodiscard]] Pairing pair(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure,
+                             const surface_transfer::Wanted& wanted) const override
   {
-    const surface::FaceTree tree(structure, 0.0);
-    return surface_transfer::pairing_by_nodes(fluid, structure, surface::node_projection(fluid, structure, tree));
+    const auto projection = surface::node_projection(fluid, structure, surface::FaceTree(structure, 0.0));
+    return {surface::operators_of_projection(fluid, structure, projection, wanted.location, wanted.fluid_mass),
+            surface_transfer::report_of_projection(fluid, structure, projection)};
   }
 
   Options options_;

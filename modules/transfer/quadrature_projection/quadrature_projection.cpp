@@ -18,7 +18,6 @@ public:
     int points = 2;
     bool adaptive = false;
     double tolerance = 0.0;
-    std::string mass = "same";
 
     static constexpr auto table()
     {
@@ -30,28 +29,22 @@ public:
                      parameter("tolerance", &Options::tolerance, "1",
                                "adaptive: change of the loads of a constant traction; 0: one point a structure face "
                                "will do",
-                               at_least(0.0)),
-                     parameter("mass", &Options::mass, "",
-                               "mass matrix that recovers traction: from the same points or the structure's native one",
-                               one_of("same", "native"))},
+                               at_least(0.0))},
           common_table());
     }
   };
   explicit QuadratureProjection(const Options& options) : SurfaceTransfer(options), options_(options) {}
 
 private:
-  [[nodiscard]] Pairing pair(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure) const override
+  [[nodiscard]] Pairing pair(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure,
+                             const surface_transfer::Wanted& wanted) const override
   {
     Pairing pairing;
     const surface::FaceTree tree(structure, 0.0);
     const auto set =
         surface::quadrature_points(fluid, structure, tree, {options_.points, options_.adaptive, options_.tolerance});
-    pairing.loads_of_nodes = surface::load_operator(fluid, structure, set.points, surface::Location::nodes);
-    pairing.loads_of_faces = surface::load_operator(fluid, structure, set.points, surface::Location::faces);
-    pairing.structure_mass =
-        options_.mass == "same" ? surface::target_mass(structure, set.points) : surface::native_mass(structure);
-    pairing.fluid_mass = surface::source_mass(fluid, set.points);
-    pairing.motion = surface::node_projection(fluid, structure, tree);
+    pairing.operators = surface::operators_of_points(fluid, structure, tree, set, wanted.location,
+                                                     surface::MassMetric::native, wanted.fluid_mass);
     pairing.report = surface_transfer::report_of_points(fluid, structure, set);
     return pairing;
   }

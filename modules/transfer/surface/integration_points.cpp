@@ -140,32 +140,41 @@ PointSet projected(const SurfaceMesh& source, const SurfaceMesh& target, const F
 
 } // namespace
 
+double add_points_of_face(const SurfaceMesh& source, const SurfaceMesh& target, std::span<const Subelement> pieces,
+                          Metric metric, std::vector<IntegrationPoint>& points)
+{
+  static const Rule segment = gauss_rule(2), triangle = face_rule(3, 2), six = triangle_rule_of_degree_4();
+  const auto face = pieces.front().source_face;
+  const std::size_t first_point = points.size();
+  double measure = 0.0;
+  for (const auto& piece : pieces) {
+    const bool has_quadrilateral = source.face(face).size() == 4 || target.face(piece.target_face).size() == 4;
+    const auto& rule = piece.n_vertices == 2 ? segment : has_quadrilateral ? six : triangle;
+    measure += add_piece(source, target, piece, rule, metric, points);
+  }
+  const double own = face_measure(source, face);
+  const double coverage = own > 0.0 ? measure / own : 0.0;
+  if (!(coverage > 1e-12)) { // nothing that could be scaled
+    points.resize(first_point);
+    return 0.0;
+  }
+  if (metric != Metric::target)
+    for (std::size_t i = first_point; i < points.size(); ++i) points[i].weight *= own / measure;
+  return coverage;
+}
+
 PointSet points_of_overlay(const SurfaceMesh& source, const SurfaceMesh& target, std::span<const Subelement> pieces,
                            Metric metric)
 {
-  const Rule segment = gauss_rule(2), triangle = face_rule(3, 2), six = triangle_rule_of_degree_4();
   PointSet set;
   set.coverage.assign(static_cast<std::size_t>(source.n_faces()), 0.0);
   for (std::size_t begin = 0; begin < pieces.size();) {
     const auto face = pieces[begin].source_face;
-    const std::size_t first_point = set.points.size();
-    double measure = 0.0;
     std::size_t end = begin;
-    for (; end < pieces.size() && pieces[end].source_face == face; ++end) {
-      const auto& piece = pieces[end];
-      const bool has_quadrilateral = source.face(face).size() == 4 || target.face(piece.target_face).size() == 4;
-      const auto& rule = piece.n_vertices == 2 ? segment : has_quadrilateral ? six : triangle;
-      measure += add_piece(source, target, piece, rule, metric, set.points);
-    }
+    while (end < pieces.size() && pieces[end].source_face == face) ++end;
+    set.coverage[index(face)] =
+        add_points_of_face(source, target, pieces.subspan(begin, end - begin), metric, set.points);
     begin = end;
-    const double own = face_measure(source, face);
-    const double coverage = own > 0.0 ? measure / own : 0.0;
-    if (!(coverage > 1e-12)) set.points.resize(first_point); // nothing that could be scaled
-    else {
-      set.coverage[index(face)] = coverage;
-      if (metric != Metric::target)
-        for (std::size_t i = first_point; i < set.points.size(); ++i) set.points[i].weight *= own / measure;
-    }
   }
   set.target_empty = faces_without_point(target, set.points);
   return set;

@@ -40,6 +40,12 @@ struct PointSet {
 [[nodiscard]] PointSet points_of_overlay(const SurfaceMesh& source, const SurfaceMesh& target,
                                          std::span<const Subelement> pieces, Metric metric);
 
+/// The same for the pieces of one source face: appends its points.
+///
+/// @return  its coverage; 0: no point was appended
+double add_points_of_face(const SurfaceMesh& source, const SurfaceMesh& target, std::span<const Subelement> pieces,
+                          Metric metric, std::vector<IntegrationPoint>& points);
+
 /// Appends the points of these source faces, n a direction, each with the closest point of the target, to a set.
 void add_closest_points(const SurfaceMesh& source, const FaceTree& target_tree,
                         std::span<const std::int32_t> source_faces, int n, PointSet& set);

@@ -5,7 +5,7 @@
 namespace mullion::surface {
 
 TransferOperators operators_of_projection(const SurfaceMesh& source, const SurfaceMesh& target, Operator projection,
-                                          Location source_location)
+                                          Location source_location, SourceMass source_mass)
 {
   TransferOperators result;
   result.source_location = source_location;
@@ -14,13 +14,14 @@ TransferOperators operators_of_projection(const SurfaceMesh& source, const Surfa
   result.load = source_location == Location::nodes ? result.nodal_load
                                                    : projected_load_operator(source, projection, source_location);
   result.projection = std::move(projection);
-  result.source_mass = mass_matrix(native_mass(source));
+  if (source_mass == SourceMass::factorised) result.source_mass = mass_matrix(native_mass(source));
   result.target_mass = mass_matrix(native_mass(target));
   return result;
 }
 
 TransferOperators operators_of_points(const SurfaceMesh& source, const SurfaceMesh& target, const FaceTree& target_tree,
-                                      const PointSet& set, Location source_location, MassMetric mass)
+                                      const PointSet& set, Location source_location, MassMetric mass,
+                                      SourceMass source_mass)
 {
   TransferOperators result;
   result.source_location = source_location;
@@ -30,7 +31,8 @@ TransferOperators operators_of_points(const SurfaceMesh& source, const SurfaceMe
   result.projection = node_projection(source, target, target_tree);
   result.facial_mean = facial_mean(source, target, set.points, source_location);
   const bool is_same = mass == MassMetric::same;
-  result.source_mass = mass_matrix(is_same ? source_mass(source, set.points) : native_mass(source));
+  if (source_mass == SourceMass::factorised)
+    result.source_mass = mass_matrix(is_same ? surface::source_mass(source, set.points) : native_mass(source));
   result.target_mass = mass_matrix(is_same ? target_mass(target, set.points) : native_mass(target));
   return result;
 }

@@ -29,21 +29,26 @@ struct TransferOperators {
   Operator nodal_load;        ///< B of a nodal source: for the adjoint motion
   Operator projection;        ///< P, source nodes x target nodes
   Operator facial_mean;       ///< target faces x source entities; 0 x 0 for node projection, which has no points
-  MassMatrix source_mass;     ///< M_f
+  MassMatrix source_mass;     ///< M_f; not solvable if it was not wanted
   MassMatrix target_mass;     ///< M_s
   bool is_projection = false; ///< B = P^T M_f: loads of nodes go to loads by P^T alone, and `interpolate` is `adjoint`
 };
 
+/// Is M_f factorised? Adjoint motion and loads from nodal loads need it; it is a third of the memory.
+enum class SourceMass { factorised, left_out };
+
 /// Node projection (P of node_projection()) and nearest neighbours (P of nearest_nodes()), with native masses.
 [[nodiscard]] TransferOperators operators_of_projection(const SurfaceMesh& source, const SurfaceMesh& target,
-                                                        Operator projection, Location source_location);
+                                                        Operator projection, Location source_location,
+                                                        SourceMass source_mass = SourceMass::factorised);
 
 /// Common refinement and quadrature projection, from their points.
 ///
 /// Quadrature projection should take native masses: on its own points they are singular where a face has too few.
 [[nodiscard]] TransferOperators operators_of_points(const SurfaceMesh& source, const SurfaceMesh& target,
                                                     const FaceTree& target_tree, const PointSet& set,
-                                                    Location source_location, MassMetric mass);
+                                                    Location source_location, MassMetric mass,
+                                                    SourceMass source_mass = SourceMass::factorised);
 
 /// Loads on the target [N] from the source's traction [Pa]: R_s = B t_f.
 [[nodiscard]] Field loads_from_traction(const TransferOperators& operators, const FieldView& traction);

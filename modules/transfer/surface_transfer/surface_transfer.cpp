@@ -15,13 +15,10 @@ surface::FieldView view(const ConstArray& values) { return {values}; }
 
 } // namespace
 
-Pairing pairing_by_nodes(const SurfaceMesh& fluid, const SurfaceMesh& structure, surface::Operator projection)
+surface::OverlayReport report_of_projection(const SurfaceMesh& fluid, const SurfaceMesh& structure,
+                                            const surface::Operator& projection)
 {
-  Pairing pairing;
-  pairing.loads_of_nodes = surface::projected_load_operator(fluid, projection, surface::Location::nodes);
-  pairing.loads_of_faces = surface::projected_load_operator(fluid, projection, surface::Location::faces);
-  pairing.structure_mass = surface::native_mass(structure);
-  auto& report = pairing.report;
+  surface::OverlayReport report;
   std::vector<bool> is_reached(static_cast<std::size_t>(structure.n_nodes()), false);
   for (int row = 0; row < projection.outerSize(); ++row) {
     surface::Point place = surface::Point::Zero();
@@ -33,8 +30,7 @@ Pairing pairing_by_nodes(const SurfaceMesh& fluid, const SurfaceMesh& structure,
   }
   for (std::size_t node = 0; node < is_reached.size(); ++node)
     if (!is_reached[node]) report.unmatched_target_nodes.add(static_cast<std::int32_t>(node));
-  pairing.motion = std::move(projection);
-  return pairing;
+  return report;
 }
 
 surface::OverlayReport report_of_points(const SurfaceMesh& fluid, const SurfaceMesh& structure,
@@ -108,14 +104,6 @@ void SurfaceTransfer::attach()
   MULLION_REQUIRE(fluid_mesh_.dimension == structure_mesh_.dimension, Errc::shape,
                   "the fluid's interface has {} coordinates a node, the structure's {}", fluid_mesh_.dimension,
                   structure_mesh_.dimension);
-  pairing_ = pair(fluid_mesh_, structure_mesh_);
-  report_misfit();
-  structure_mass_ = surface::mass_matrix(pairing_.structure_mass);
-  MULLION_REQUIRE(structure_mass_.is_solvable, Errc::numeric,
-                  "the structure's mass matrix on the interface cannot be factorised; is its surface folded?");
-  if (pairing_.fluid_mass.nonZeros() > 0) fluid_mass_ = surface::mass_matrix(pairing_.fluid_mass);
-  forces_of_nodes_ = pairing_.fluid_mass.nonZeros() > 0 ? pairing_.fluid_mass : surface::native_mass(fluid_mesh_);
-  forces_of_faces_ = surface::face_split(fluid_mesh_);
   fluid_measure_ = surface::total_measure(fluid_mesh_);
   structure_measure_ = surface::total_measure(structure_mesh_);
 
@@ -134,6 +122,16 @@ void SurfaceTransfer::attach()
   received_load_ = input("fluid_side", "load");
   received_velocity_ = input("structure_side", "velocity");
   received_displacement_ = input("structure_side", "displacement");
+
+  const auto location = received_traction_.is_connected() ? surface::Location::faces : surface::Location::nodes;
+  const bool needs_fluid_mass = options_.motion == "adjoint" || received_load_.is_connected();
+  pairing_ = pair(fluid_mesh_, structure_mesh_,
+                  {location, needs_fluid_mass ? surface::SourceMass::factorised : surface::SourceMass::left_out});
+  report_misfit();
+  MULLION_REQUIRE(pairing_.operators.target_mass.is_solvable, Errc::numeric,
+                  "the structure's mass matrix on the interface cannot be factorised; is its surface folded?");
+  fluid_forces_ =
+      location == surface::Location::faces ? surface::face_split(fluid_mesh_) : surface::native_mass(fluid_mesh_);
 }
 
 SurfaceMesh SurfaceTransfer::mesh_of(const std::string& window) const
@@ -175,34 +173,30 @@ void SurfaceTransfer::report_misfit() const
 
 // ---- loads -------------------------------------------------------------------------------------------------------
 
+surface::FieldView SurfaceTransfer::fluid_traction() const
+{
+  return view((received_traction_.is_connected() ? received_traction_ : received_nodal_traction_).newest());
+}
+
 surface::Field SurfaceTransfer::loads_on_structure() const
 {
-  if (received_traction_.is_connected())
-    return surface::apply(pairing_.loads_of_faces, view(received_traction_.newest()));
-  if (received_nodal_traction_.is_connected())
-    return surface::apply(pairing_.loads_of_nodes, view(received_nodal_traction_.newest()));
-  MULLION_REQUIRE(received_load_.is_connected(), Errc::config,
+  if (received_load_.is_connected())
+    return surface::loads_from_loads(pairing_.operators, fluid_mesh_, view(received_load_.newest()));
+  MULLION_REQUIRE(received_traction_.is_connected() || received_nodal_traction_.is_connected(), Errc::config,
                   "the driver connects neither traction nor nodal_traction nor load to fluid_side");
-  if (fluid_mass_.factors == nullptr) return surface::apply_transposed(pairing_.motion, view(received_load_.newest()));
-  return surface::loads_from_loads(pairing_.loads_of_nodes, fluid_mass_, view(received_load_.newest()));
+  return surface::loads_from_traction(pairing_.operators, fluid_traction());
 }
 
 surface::Field SurfaceTransfer::forces_on_fluid() const
 {
-  if (received_traction_.is_connected()) return surface::apply(forces_of_faces_, view(received_traction_.newest()));
-  if (received_nodal_traction_.is_connected())
-    return surface::apply(forces_of_nodes_, view(received_nodal_traction_.newest()));
-  return view(received_load_.newest());
+  if (received_load_.is_connected()) return view(received_load_.newest());
+  return surface::apply(fluid_forces_, fluid_traction());
 }
 
 surface::Resultant SurfaceTransfer::fluid_resultant() const
 {
-  if (received_traction_.is_connected())
-    return surface::resultant_of_traction(fluid_mesh_, view(received_traction_.newest()), surface::Location::faces);
-  if (received_nodal_traction_.is_connected())
-    return surface::resultant_of_traction(fluid_mesh_, view(received_nodal_traction_.newest()),
-                                          surface::Location::nodes);
-  return surface::resultant_of_loads(fluid_mesh_, view(received_load_.newest()));
+  if (received_load_.is_connected()) return surface::resultant_of_loads(fluid_mesh_, view(received_load_.newest()));
+  return surface::resultant_of_traction(fluid_mesh_, fluid_traction(), pairing_.operators.source_location);
 }
 
 void SurfaceTransfer::loads(const TimeStep&)
@@ -210,7 +204,7 @@ void SurfaceTransfer::loads(const TimeStep&)
   const surface::Field loads = loads_on_structure();
   load_.now() = loads;
   traction_.now() =
-      surface::recover(structure_mass_, loads,
+      surface::recover(pairing_.operators.target_mass, loads,
                        options_.recovery == "consistent" ? surface::Recovery::consistent : surface::Recovery::lumped);
   const auto received = surface::resultant_of_loads(structure_mesh_, loads), given = fluid_resultant();
   const auto n = structure_mesh_.dimension;
@@ -239,9 +233,9 @@ void SurfaceTransfer::loads(const TimeStep&)
 
 surface::Field SurfaceTransfer::motion_of_fluid(const ConstArray& structure_motion) const
 {
-  if (options_.motion == "adjoint" && fluid_mass_.factors != nullptr)
-    return surface::adjoint_motion(pairing_.loads_of_nodes, fluid_mass_, view(structure_motion));
-  return surface::apply(pairing_.motion, view(structure_motion));
+  return surface::motion_of_source(pairing_.operators, view(structure_motion),
+                                   options_.motion == "adjoint" ? surface::Motion::adjoint
+                                                                : surface::Motion::interpolate);
 }
 
 void SurfaceTransfer::motion(const TimeStep&)

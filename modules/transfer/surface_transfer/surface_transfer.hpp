@@ -8,6 +8,7 @@
 #include "surface/balance.hpp"
 #include "surface/mass_matrix.hpp"
 #include "surface/operators.hpp"
+#include "surface/transfer_operators.hpp"
 
 #include <mullion/sdk/module.hpp>
 
@@ -42,22 +43,25 @@ struct CommonOptions {
   }
 };
 
-/// How two interface meshes are paired. The source is the fluid's side.
+/// How two interface meshes are paired. The source of the kernels is the fluid's side.
 struct Pairing {
-  surface::Operator loads_of_nodes; ///< (structure nodes x fluid nodes) [m or m^2]: R = B t for nodal traction
-  surface::Operator loads_of_faces; ///< (structure nodes x fluid faces): the same for facial traction
-  surface::Operator motion;         ///< (fluid nodes x structure nodes) [1]
-  surface::Operator structure_mass; ///< recovers traction from loads
-  surface::Operator fluid_mass; ///< on the metric of the load operators; empty: loads go across by `motion` transposed
+  surface::TransferOperators operators;
   surface::OverlayReport report;
 };
 
-/// Pairing node by node: loads go from each fluid node to the structure by P transposed, motion comes by P.
-/// @param projection  P (fluid nodes x structure nodes) [1]
-[[nodiscard]] Pairing pairing_by_nodes(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure,
-                                       surface::Operator projection);
+/// What the pairing is for.
+struct Wanted {
+  surface::Location location;     ///< of the traction that the fluid exports
+  surface::SourceMass fluid_mass; ///< is it needed?
+};
 
-/// How well the points of a quadrature meet the target, as an overlay would report it.
+/// How well projected nodes meet the structure, as an overlay would report it.
+/// @param projection  P (fluid nodes x structure nodes) [1]
+[[nodiscard]] surface::OverlayReport report_of_projection(const surface::SurfaceMesh& fluid,
+                                                          const surface::SurfaceMesh& structure,
+                                                          const surface::Operator& projection);
+
+/// How well the points of a quadrature meet the structure.
 [[nodiscard]] surface::OverlayReport report_of_points(const surface::SurfaceMesh& fluid,
                                                       const surface::SurfaceMesh& structure,
                                                       const surface::PointSet& set);
@@ -82,12 +86,13 @@ protected:
   explicit SurfaceTransfer(CommonOptions options) : options_(std::move(options)) {}
 
   /// Pair the two meshes. From reference coordinates alone, the same to the bit however often it is done.
-  [[nodiscard]] virtual Pairing pair(const surface::SurfaceMesh& fluid,
-                                     const surface::SurfaceMesh& structure) const = 0;
+  [[nodiscard]] virtual Pairing pair(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure,
+                                     const Wanted& wanted) const = 0;
 
 private:
   [[nodiscard]] surface::SurfaceMesh mesh_of(const std::string& window) const;
   void report_misfit() const;
+  [[nodiscard]] surface::FieldView fluid_traction() const;
   [[nodiscard]] surface::Field loads_on_structure() const;
   [[nodiscard]] surface::Field forces_on_fluid() const; ///< on its nodes [N]
   [[nodiscard]] surface::Resultant fluid_resultant() const;
@@ -96,8 +101,7 @@ private:
   CommonOptions options_;
   surface::SurfaceMesh fluid_mesh_, structure_mesh_; ///< reference configuration; derived from the windows' panes
   Pairing pairing_;
-  surface::MassMatrix structure_mass_, fluid_mass_;
-  surface::Operator forces_of_nodes_, forces_of_faces_; ///< the fluid's own nodal forces from its tractions
+  surface::Operator fluid_forces_; ///< the fluid's own nodal forces from its traction
   double fluid_measure_ = 0.0, structure_measure_ = 0.0;
   Field traction_, load_, force_, moment_, fluid_force_, fluid_moment_;
   Field measure_, fluid_measure_field_, coverage_, covered_fraction_, gap_, unmatched_, power_, fluid_power_;
