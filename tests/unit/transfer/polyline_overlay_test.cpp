@@ -200,6 +200,24 @@ TEST_CASE("the two sides of a plate do not mix, though it is thinner than its fa
   }
 }
 
+TEST_CASE("two chains between the same two corners stay apart")
+{
+  // A lens: two parabolas between (-1, 0) and (1, 0), as thick as one half of its length.
+  const auto lens = [](int n, int m) {
+    Outline x;
+    for (int i = 0; i < n; ++i) x.emplace_back(-1.0 + 2.0 * i / n, -0.5 * (1.0 - std::pow(-1.0 + 2.0 * i / n, 2)));
+    for (int i = 0; i < m; ++i) x.emplace_back(1.0 - 2.0 * i / m, 0.5 * (1.0 - std::pow(1.0 - 2.0 * i / m, 2)));
+    return polyline(x, true);
+  };
+  const auto source = lens(9, 12), target = lens(7, 8);
+
+  const auto [pieces, report] = overlay(source, target);
+
+  check_pieces(source, target, pieces);
+  CHECK(report.unmatched_source_features.count == 0);
+  for (const auto& p : pieces) CHECK((p.source_face < 9) == (p.target_face < 7));
+}
+
 TEST_CASE("a source may cover a part of a loop, and a loop may reach beyond a target that covers a part of it")
 {
   const auto around = [](double from, double to, int n) {
