@@ -50,13 +50,6 @@ bool runs_against(const Sides& sides, const std::vector<std::int32_t>& faces)
   return sum < 0.0;
 }
 
-double distance_to_chain(const SurfaceMesh& mesh, const Chain& chain, const Point& x)
-{
-  double best = std::numeric_limits<double>::infinity();
-  for (const auto f : chain.faces) best = std::min(best, closest_on_face(mesh, f, x).distance);
-  return best;
-}
-
 /// Pieces, coverage and lists of one pair of paths.
 void collect(const Path& source, const Path& target, const PathEnds& ends, Collected& out)
 {
@@ -151,20 +144,29 @@ std::pair<Path, PathEnds> target_path(const Sides& sides, const Chain& chain, bo
   return {path, ends};
 }
 
+/// Length of the source's faces whose centre is closest to each target chain [m].
+std::vector<double> votes(const Sides& sides, const std::vector<std::int32_t>& faces)
+{
+  std::vector<double> length(sides.target_chains.size(), 0.0);
+  for (const auto f : faces) {
+    const auto closest = sides.target_tree.closest(face_centre(sides.source, f)).face;
+    length[sides.chain_of_target_face[index(closest)]] += face_measure(sides.source, f);
+  }
+  return length;
+}
+
 /// Both ends of the source's chain are corners that the target has too: the target chain between the same two.
 bool collect_between_matches(const Sides& sides, const Chain& chain, std::int32_t start, std::int32_t end,
                              Collected& out)
 {
   const Chain* best = nullptr;
-  double best_distance = std::numeric_limits<double>::infinity();
-  for (const auto& candidate : sides.target_chains) {
+  double most = -1.0;
+  const auto length = votes(sides, chain.faces); // several may join the same two: upper and lower side of a lens
+  for (std::size_t c = 0; c < sides.target_chains.size(); ++c) {
+    const auto& candidate = sides.target_chains[c];
     const auto first = candidate.nodes.front(), last = candidate.nodes.back();
     const bool fits = !candidate.is_loop && ((first == start && last == end) || (first == end && last == start));
-    if (!fits) continue;
-    double distance = 0.0; // two chains may join the same two corners: upper and lower side of a lens
-    for (const auto f : chain.faces)
-      distance += distance_to_chain(sides.target, candidate, face_centre(sides.source, f));
-    if (distance < best_distance) best = &candidate, best_distance = distance;
+    if (fits && length[c] > most) best = &candidate, most = length[c];
   }
   if (best == nullptr) return false;
   const bool against = start == end ? runs_against(sides, chain.faces) : best->nodes.front() == end;

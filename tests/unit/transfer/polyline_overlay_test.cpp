@@ -200,6 +200,52 @@ TEST_CASE("the two sides of a plate do not mix, though it is thinner than its fa
   }
 }
 
+TEST_CASE("of two sides within reach the one that faces the same way counts, though the other is closer")
+{
+  // Flat ellipses 0.04 thick; one is 0.025 higher, so that its lower side lies 0.015 from the other's upper side, and
+  // its upper side 0.025.
+  const auto ellipse = [](int n, double height) {
+    Outline x;
+    for (int i = 0; i < n; ++i) {
+      const double a = 6.283185307179586 * (i + 0.5) / n;
+      x.emplace_back(std::cos(a), height + 0.02 * std::sin(a));
+    }
+    return polyline(x, true);
+  };
+  const auto source = ellipse(60, 0.0), target = ellipse(52, 0.025);
+
+  const auto [pieces, report] = overlay(source, target);
+
+  check_pieces(source, target, pieces);
+  CHECK(report.covered_fraction == doctest::Approx(1.0).epsilon(1e-12));
+  CHECK(report.largest_gap < 0.04);
+  // Nodes around the tips, |x| > 0.9 or so, face nothing: 14 % of either mesh at each tip. Where hits on the wrong side
+  // count, about half of all nodes do.
+  CHECK(report.unmatched_source_nodes.count <= 17); // 28 % of 60
+  CHECK(report.unmatched_target_nodes.count <= 15); // 28 % of 52
+  for (const auto& p : pieces)
+    if (std::abs(face_centre(source, p.source_face).x()) < 0.8) // away from the tips
+      CHECK(face_normal(source, p.source_face).dot(face_normal(target, p.target_face)) > 0.9);
+}
+
+TEST_CASE("two chains between the same two corners stay apart")
+{
+  // A lens: two parabolas between (-1, 0) and (1, 0), as thick as one half of its length.
+  const auto lens = [](int n, int m) {
+    Outline x;
+    for (int i = 0; i < n; ++i) x.emplace_back(-1.0 + 2.0 * i / n, -0.5 * (1.0 - std::pow(-1.0 + 2.0 * i / n, 2)));
+    for (int i = 0; i < m; ++i) x.emplace_back(1.0 - 2.0 * i / m, 0.5 * (1.0 - std::pow(1.0 - 2.0 * i / m, 2)));
+    return polyline(x, true);
+  };
+  const auto source = lens(9, 12), target = lens(7, 8);
+
+  const auto [pieces, report] = overlay(source, target);
+
+  check_pieces(source, target, pieces);
+  CHECK(report.unmatched_source_features.count == 0);
+  for (const auto& p : pieces) CHECK((p.source_face < 9) == (p.target_face < 7));
+}
+
 TEST_CASE("a source may cover a part of a loop, and a loop may reach beyond a target that covers a part of it")
 {
   const auto around = [](double from, double to, int n) {
