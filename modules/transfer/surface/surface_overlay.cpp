@@ -63,7 +63,7 @@ bool find_image(const Target& target, std::int32_t t, const Frame& plane, double
   const Point area_vector = twice_area_vector(target.mesh, t);
   const double twice_area = area_vector.norm();
   const double slope_of_face = plane.normal.dot(area_vector) / twice_area; // the tree has no degenerate faces
-  if ((target.is_opposite ? -slope_of_face : slope_of_face) < least_cosine) return false;
+  if (!((target.is_opposite ? -slope_of_face : slope_of_face) >= least_cosine)) return false; // nor if it is NaN
 
   const auto nodes = target.mesh.face(t);
   const std::size_t n = nodes.size();

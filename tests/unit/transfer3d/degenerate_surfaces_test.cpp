@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 using namespace mullion::testing;
 using namespace mullion::surface;
@@ -259,6 +260,21 @@ TEST_CASE("a second layer behind the first one is left alone")
   CHECK(m.report.largest_gap < 0.002);
 }
 
+TEST_CASE("a layer behind does not add to what the nearer one covers in part")
+{
+  const auto at = [](double z, double width) {
+    return [z, width](double u, double v) { return Point(width * u, v, z); };
+  };
+  const auto source = grid_on(at(0.0, 1.0), {1, 1, Faces::quadrilaterals});
+  const auto target =
+      joined(grid_on(at(0.5, 1.0), {3, 3, Faces::triangles}), grid_on(at(0.001, 0.8), {3, 3, Faces::triangles}));
+
+  const auto m = assemble(source, target);
+
+  CHECK(m.report.min_coverage == doctest::Approx(0.8).epsilon(1e-12)); // both together: 1.8
+  CHECK(m.report.largest_gap < 0.002);
+}
+
 TEST_CASE("where the source reaches beyond the target, the report says how far")
 {
   const auto source = grid_on(unit_square, {10, 6, Faces::triangles, 0.2, 1});
@@ -357,6 +373,29 @@ TEST_CASE("quadrilaterals with a corner that points inwards are covered, and cov
     CHECK(std::abs(side->report.max_coverage - 1.0) < 1e-12);
   }
   CHECK(std::abs(area_of(back) - 1.0) < 1e-12);
+}
+
+TEST_CASE("pieces meet the corners of a quadrilateral with a corner that points inwards")
+{
+  const auto square = mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 3}});
+  for (std::int32_t first = 0; first < 4; ++first)
+    for (const bool is_turned : {false, true}) {
+      std::vector<std::int32_t> nodes;
+      for (std::int32_t k = 0; k < 4; ++k) nodes.push_back((first + k) % 4);
+      const auto dart = mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.7, 0.25, 0}}, {nodes});
+      const auto target = is_turned ? turned_over(dart) : dart;
+      int n_vertices = 0;
+
+      overlay_surfaces(square, target, {.opposite = is_turned}, [&](const Subelement& piece) {
+        for (int k = 0; k < piece.n_vertices; ++k, ++n_vertices) {
+          const Point x_f = map_to_space(square, 0, piece.source_xi[k]),
+                      x_s = map_to_space(target, 0, piece.target_xi[k]);
+          CHECK((x_f - x_s).norm() < 1e-14); // round-off
+        }
+      });
+
+      CHECK(n_vertices == 6); // two triangles, whose corners are the dart's
+    }
 }
 
 TEST_CASE("faces of very different sizes are matched in both directions")
