@@ -59,8 +59,8 @@ MeshFile interface_of(const MeshFile& mesh, const std::string& group)
       std::string known;
       for (const auto& g : mesh.groups)
         if (g.dimension < 3) known += join(known.empty() ? "" : ", ", '"', g.name, '"');
-      throw FileError(join("the mesh has elements ", facts(surface.blocks.front().shape).name, " and ",
-                           facts(block.shape).name,
+      const std::string other = facts(block.shape).dimension == dimension ? "" : join(" and ", facts(block.shape).name);
+      throw FileError(join("the mesh has elements ", facts(surface.blocks.front().shape).name, other,
                            ", so it is no surface; name the group that is: ", known.empty() ? "it has none" : known));
     }
   const int space = std::max(surface.dimension, dimension + 1);

@@ -1,5 +1,5 @@
 // The element shapes that meshes consist of: their numbers of nodes, dimensions and names. The numbers and the order
-// of an element's nodes are those of the module SDK (and of Gmsh and VTK, which agree on linear elements).
+// of an element's nodes are those of the module SDK and of Gmsh. VTK's differs in the wedge only.
 #pragma once
 
 #include <array>

@@ -45,6 +45,11 @@ Element add_vtk_cell(RawMesh& raw, std::int64_t type, std::span<const std::int64
                                                 nodes[4], nodes[5], nodes[7], nodes[6]};
     return add(raw, Shape::hexahedron8, around, fail);
   }
+  if (type == shape_facts[static_cast<std::size_t>(Shape::prism6)].vtk_type && nodes.size() == 6) {
+    std::array<std::int64_t, 6> turned{};
+    for (std::size_t k = 0; k < 6; ++k) turned[k] = nodes[vtk_wedge_order[k]];
+    return add(raw, Shape::prism6, turned, fail);
+  }
   for (std::size_t s = 0; s < n_shapes; ++s)
     if (shape_facts[s].vtk_type == type) return add(raw, static_cast<Shape>(s), nodes, fail);
   fail(join("a cell of type ", type, " (", foreign_vtk_type(type), ") with ", nodes.size(), " points"),

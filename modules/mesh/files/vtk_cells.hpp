@@ -17,6 +17,9 @@ using Fail = std::function<void(const std::string& found, const std::string& rig
 /// Prefix of the name of a cell array that marks the cells of a group with 1: "group:wall".
 inline constexpr const char* group_prefix = "group:";
 
+/// Where each node of a prism6 stands in a VTK_WEDGE, whose first triangle has its normal out of the cell; and back.
+inline constexpr std::array<std::size_t, 6> vtk_wedge_order = {0, 2, 1, 3, 5, 4};
+
 /// Add points; the first number is that of VTK, 0.
 /// @param coordinates 3 a point
 void add_vtk_points(RawMesh& raw, std::span<const double> coordinates);

@@ -133,11 +133,13 @@ std::string binary_bytes(const VtuFile& file, const pugi::xml_node& array)
   }
   return read_bytes(file, array, [&](std::size_t header, std::size_t n) {
     if (header == 0) return decoded(file, array, from, n);
-    // The header may be a base64 text of its own, which then ends in padding or between two groups of four, or the
-    // first bytes of the one text.
+    // The header may be a base64 text of its own, which then ends in its padding or between two groups of four, or
+    // the first bytes of the one text.
     const auto characters = (header + 2) / 3 * 4;
-    const bool is_apart = header % 3 == 0 || (characters <= from.size() && from[characters - 1] == '=');
-    if (is_apart) return decoded(file, array, from.substr(std::min(characters, from.size())), n);
+    const auto padding = (3 - header % 3) % 3;
+    const bool is_apart = characters <= from.size() &&
+                          from.substr(characters - padding, padding) == std::string_view("==").substr(0, padding);
+    if (is_apart) return decoded(file, array, from.substr(characters), n);
     return decoded(file, array, from, header + n).substr(header);
   });
 }

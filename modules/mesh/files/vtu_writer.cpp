@@ -42,7 +42,10 @@ void append_cells(std::string& text, const MeshFile& mesh)
   open_array(text, "Int64", "connectivity");
   for (const auto& block : mesh.blocks)
     for (Eigen::Index e = 0; e < block.connectivity.cols(); ++e) {
-      for (const auto node : block.connectivity.col(e)) append(text, node, ' ');
+      for (std::size_t k = 0; k < static_cast<std::size_t>(block.connectivity.rows()); ++k) {
+        const auto row = block.shape == Shape::prism6 ? vtk_wedge_order[k] : k;
+        append(text, block.connectivity(static_cast<Eigen::Index>(row), e), ' ');
+      }
       text.back() = '\n';
     }
   text += "</DataArray>\n";
