@@ -30,7 +30,7 @@ public:
           std::tuple{parameter("load_time", &Options::load_time, "",
                                "the structure takes the load for the end of its step, or for its mean",
                                one_of("end", "mean"))},
-          load_interpolation_option(), motion_option());
+          load_interpolation_option(), motion_option(), exchange_options());
     }
   };
 
@@ -48,7 +48,7 @@ public:
   {
     const double alpha = options_.alpha, beta = options_.beta;
     names_ = wire_fsi(wiring, options_);
-    wiring.state_like("load", names_.wet + ".traction");
+    wiring.state_like("load", names_.load);
     const double load_lag = options_.load_time == "end" ? options_.sampling_lag() : options_.sampling_lag() - 0.5;
     wiring.state_net_lag((options_.is_profile_linear() ? 1.0 : 0.5) + alpha + beta + load_lag);
     wiring.explain_divergence("css takes each solver once a step: where the fluid's added mass outweighs the "

@@ -11,7 +11,7 @@ public:
   struct Options : FsiOptions {
     static constexpr auto table()
     {
-      return std::tuple_cat(profile_option(), sampling_option(), load_interpolation_option());
+      return std::tuple_cat(profile_option(), sampling_option(), load_interpolation_option(), exchange_options());
     }
   };
   explicit CssParallel(const Options& options) : options_(options) {}

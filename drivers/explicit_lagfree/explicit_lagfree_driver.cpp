@@ -17,13 +17,13 @@ namespace mullion::explicit_lagfree {
 class ExplicitLagfree final : public Driver {
 public:
   struct Options : FsiOptions {
-    static constexpr auto table() { return std::tuple{}; }
+    static constexpr auto table() { return exchange_options(); }
   };
-  explicit ExplicitLagfree(const Options&) {}
+  explicit ExplicitLagfree(const Options& options) : options_(options) {}
 
   void define(Wiring& wiring) override
   {
-    names_ = wire_fsi(wiring, {}, {.sends_evaluation_velocity = true});
+    names_ = wire_fsi(wiring, options_, {.sends_evaluation_velocity = true});
     wiring.history(names_.wet, 2); // a^{n-1}
     wiring.state_numbers("previous_dt", 1);
     wiring.state_net_lag(0.0);
@@ -73,6 +73,7 @@ private:
                     (expected - displacement_.committed()).norm());
   }
 
+  Options options_;
   FsiNames names_;
   FsiRoles roles_;
   ModuleField displacement_, acceleration_; ///< of the wet surface

@@ -28,7 +28,7 @@ public:
                      parameter("load", &Options::load, "",
                                "the old traction: the fluid's of the last step (mean), or the last load (recursion)",
                                one_of("mean", "recursion"))},
-          profile_option(), sampling_option(), load_interpolation_option());
+          profile_option(), sampling_option(), load_interpolation_option(), exchange_options());
     }
   };
 
@@ -43,7 +43,7 @@ public:
     const auto& [a0, a1, beta] = std::tie(options_.a0, options_.a1, options_.beta);
     names_ = wire_fsi(wiring, options_);
     wiring.history(names_.wet, 2); // a^{n-1}
-    wiring.state_like("load", names_.wet + ".traction");
+    wiring.state_like("load", names_.load);
     wiring.state_numbers("previous_dt", 1);
     const double motion_lag = (options_.is_profile_linear() ? 0.0 : -0.5) + 1.0 - (a0 - a1);
     wiring.state_net_lag(motion_lag + options_.sampling_lag() + (options_.load == "mean" ? beta : beta / (1.0 - beta)));

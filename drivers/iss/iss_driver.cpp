@@ -21,7 +21,7 @@ public:
       return std::tuple_cat(std::tuple{parameter("starts_early", &Options::starts_early, "", HalfStepClock::meaning),
                                        parameter("w_end", &Options::w_end, "",
                                                  "the exported pressure goes with the wall velocity at its own time")},
-                            sampling_option());
+                            sampling_option(), exchange_options());
     }
   };
   explicit Iss(const Options& options) : options_(options) {}

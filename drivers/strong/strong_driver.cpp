@@ -55,7 +55,7 @@ public:
                         at_least(1)),
               parameter("on_not_converged", &Options::on_not_converged, "", "what a step without convergence is",
                         one_of("fail", "accept_with_warning"))},
-          profile_option(), sampling_option(), load_interpolation_option(), motion_option());
+          profile_option(), sampling_option(), load_interpolation_option(), motion_option(), exchange_options());
     }
   };
 
@@ -71,7 +71,7 @@ public:
   void define(Wiring& wiring) override
   {
     names_ = wire_fsi(wiring, options_);
-    const auto motion = names_.wet + "." + names_.motion, load = names_.wet + ".traction";
+    const auto motion = names_.wet + "." + names_.motion, load = names_.load;
     wiring.history(names_.wet, 3); // the predictor's
     if (is_parallel_) wiring.history(names_.transfer + ".structure_side", 3);
     acceleration_.define(wiring, is_parallel_ ? std::vector{motion, load} : std::vector{motion});

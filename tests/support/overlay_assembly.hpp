@@ -30,7 +30,7 @@ struct OverlayMatrices {
 };
 
 /// Points and weights (barycentric coordinates; weights sum to one) exact for polynomials of degree 4 on a triangle:
-/// enough for products of bilinear shape functions where those are polynomials in space. Strang & Fix 1973.
+/// enough for products of bilinear shape functions where those are polynomials in space. Dunavant 1985.
 struct TrianglePoint {
   double b[3], weight;
 };

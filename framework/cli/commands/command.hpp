@@ -23,12 +23,13 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-int run_run(const Arguments& arguments);     // run.cpp
-int run_check(const Arguments& arguments);   // check.cpp
-int run_modules(const Arguments& arguments); // modules.cpp
-int run_study(const Arguments& arguments);   // study.cpp
-int run_report(const Arguments& arguments);  // report.cpp
-int run_ps(const Arguments& arguments);      // ps.cpp
-int run_stop(const Arguments& arguments);    // stop.cpp
+int run_run(const Arguments& arguments);           // run.cpp
+int run_check(const Arguments& arguments);         // check.cpp
+int run_modules(const Arguments& arguments);       // modules.cpp
+int run_study(const Arguments& arguments);         // study.cpp
+int run_transfer_test(const Arguments& arguments); // transfer_test.cpp
+int run_report(const Arguments& arguments);        // report.cpp
+int run_ps(const Arguments& arguments);            // ps.cpp
+int run_stop(const Arguments& arguments);          // stop.cpp
 
 } // namespace mullion::cli

@@ -291,7 +291,8 @@ void Recorder::collect_timings()
   attempt.timings.push_back({"mullion", "output", control_.step + 1, static_cast<double>(output_ns_) * ns,
                              static_cast<double>(output_ns_) * ns, 0.0});
   double calls = 0.0;
-  for (const auto& timing : attempt.timings) calls += timing.wall_s;
+  for (const auto& timing : attempt.timings)
+    if (timing.call != attach_call) calls += timing.wall_s;
   // What is left: the driver's own arithmetic, commits, audits.
   attempt.timings.push_back(
       {"mullion", "driver and commit", control_.step, attempt.wall_s - calls, attempt.wall_s - calls, 0.0});

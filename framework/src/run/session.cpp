@@ -122,8 +122,10 @@ void Session::await(std::uint32_t index)
   for (const auto w : windows_written(module))
     mark_written(w, {module.stamp, module.step.index, module.step.iteration, MULLION_INSTANT});
   if (!module.large_fields.empty()) check_later(index);
-  if (module.operation != Operation::step && module.operation != Operation::call) return;
-  auto& timing = module.timings[module.operation == Operation::step ? 0 : 1 + module.function];
+  const bool is_attach = module.operation == Operation::attach;
+  if (module.operation != Operation::step && module.operation != Operation::call && !is_attach) return;
+  auto& timing =
+      is_attach ? module.timings.back() : module.timings[module.operation == Operation::step ? 0 : 1 + module.function];
   ++timing.count;
   timing.wall_ns += nanoseconds_since(module.begun);
   timing.work_ns += work_ns;

@@ -169,6 +169,7 @@ void Session::describe_modules()
     module.timings.push_back({"step"});
     for (std::uint32_t f = 0; f < module.entries->n_functions; ++f)
       module.timings.push_back({module.entries->functions[f].name});
+    module.timings.push_back({attach_call});
     control_.n_modules = m + 1;
   }
 }

@@ -126,7 +126,7 @@ int orchestrate(const RunOptions& options, shm::Control& control, int control_fd
     session.shut_down();
     supervisor.unserve();
     recorder.finish(stopped_by.empty() ? "completed" : "stopped", stopped_by);
-    std::fputs(run::summary(recorder, stopped_by).c_str(), stdout);
+    if (options.has_summary) std::fputs(run::summary(recorder, stopped_by).c_str(), stdout);
     return 0;
   } catch (const std::exception& error) {
     log::show_progress("");

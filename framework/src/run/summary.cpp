@@ -75,8 +75,9 @@ std::string summary(const Recorder& recorder, const std::string& stopped_by)
   if (recorder.interface_summary()) text += describe_interface(*recorder.interface_summary());
   text += fmt::format("time          {:<28} {:>10} {:>10} {:>10} {:>7}\n", "", "calls", "work", "waiting", "share");
   for (const auto& timing : attempt.timings)
-    text += fmt::format("  {:<12}{:<28} {:>10} {:>10} {:>10} {:>5.1f} %\n", timing.who, timing.call, timing.count,
-                        duration(timing.work_s), duration(timing.wait_s), 100.0 * timing.wall_s / attempt.wall_s);
+    if (timing.call != attach_call)
+      text += fmt::format("  {:<12}{:<28} {:>10} {:>10} {:>10} {:>5.1f} %\n", timing.who, timing.call, timing.count,
+                          duration(timing.work_s), duration(timing.wait_s), 100.0 * timing.wall_s / attempt.wall_s);
   text += fmt::format("results in {}\n", recorder.out().string());
   return text;
 }

@@ -17,6 +17,9 @@ struct CallTiming {
   std::int64_t work_ns = 0; ///< inside the module, arming and checks included
 };
 
+/// The call that rebuilds what is derived; it belongs to the start-up, not to the steps.
+inline constexpr const char* attach_call = "attach";
+
 inline std::int64_t nanoseconds_since(Clock::time_point begin)
 {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();

@@ -135,10 +135,12 @@ Verdict judge(const SurfaceMesh& source, const SurfaceMesh& target, const Overla
     warn(named(report.unmatched_source_nodes, "source node", "source nodes", source_node),
          " not facing the target; places on it are interpolated");
   if (report.unmatched_source_features.count > 0)
-    warn(named(report.unmatched_source_features, "corner or end of the source", "corners and ends of the source", source_node),
+    warn(named(report.unmatched_source_features, "corner or end of the source", "corners and ends of the source",
+               source_node),
          " without a partner on the target");
   if (report.unmatched_target_features.count > 0)
-    warn(named(report.unmatched_target_features, "corner or end of the target", "corners and ends of the target", target_node),
+    warn(named(report.unmatched_target_features, "corner or end of the target", "corners and ends of the target",
+               target_node),
          " without a partner on the source");
   if (report.skipped_source_faces.count > 0)
     warn(named(report.skipped_source_faces, "source face", "source faces", source_face), " without extent, skipped");

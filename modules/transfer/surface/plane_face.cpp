@@ -21,15 +21,13 @@ Frame frame_of(const Point& origin, const Point& towards, const Point& normal)
   return {origin, x, normal.cross(x), normal};
 }
 
-FacePart part_of(const Frame& frame, std::span<const Point> corners, std::span<const PlanePoint> local)
+FacePart part_of(const Frame& frame, std::span<const PlanePoint> corners, std::span<const PlanePoint> local)
 {
   FacePart part;
   part.frame = frame;
   part.n = static_cast<int>(corners.size());
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    part.corner[k] = frame.coordinates(corners[k]);
-    part.local[k] = local[k];
-  }
+  std::copy(corners.begin(), corners.end(), part.corner.begin());
+  std::copy(local.begin(), local.end(), part.local.begin());
   for (std::size_t k = 0; k < corners.size(); ++k)
     part.inside[k] = left_of(part.corner[k], part.corner[(k + 1) % corners.size()]);
   part.area = 0.5 * turn(part.corner[0], part.corner[1], part.corner[2]);
@@ -64,7 +62,7 @@ Point twice_area_vector(const SurfaceMesh& mesh, std::int32_t f)
   return nodes.size() == 3 ? (x(1) - x(0)).cross(x(2) - x(0)) : (x(2) - x(0)).cross(x(3) - x(1));
 }
 
-PlaneFace plane_face(const SurfaceMesh& mesh, std::int32_t f)
+PlaneFace plane_face(const SurfaceMesh& mesh, std::int32_t f, const Eigen::Matrix3Xd& normals)
 {
   PlaneFace face;
   const auto nodes = mesh.face(f);
@@ -81,13 +79,19 @@ PlaneFace plane_face(const SurfaceMesh& mesh, std::int32_t f)
 
   const auto& local = local_corners(n);
   const double least_area = least_area_share * face.length * face.length;
+  const auto image_in = [&](const Frame& plane) {
+    PlaneCorners image;
+    for (std::size_t k = 0; k < 4; ++k) image[k] = image_of_node(plane, x[k], normals.col(nodes[k])).place;
+    return image;
+  };
   const auto add_triangle = [&](std::size_t a, std::size_t b, std::size_t c) {
     const Point normal = (x[b] - x[a]).cross(x[c] - x[a]);
     if (!(normal.norm() > 2.0 * least_area)) return;
-    const std::array corners = {x[a], x[b], x[c]};
+    const Frame frame = frame_of(x[a], x[b], normal.normalized());
+    const std::array corners = {frame.coordinates(x[a]), frame.coordinates(x[b]), frame.coordinates(x[c])};
     const std::array at = {local[a], local[b], local[c]};
-    face.parts[static_cast<std::size_t>(face.n_parts++)] =
-        part_of(frame_of(x[a], x[b], normal.normalized()), corners, at);
+    FacePart& part = face.parts[static_cast<std::size_t>(face.n_parts++)] = part_of(frame, corners, at);
+    if (n == 4) part.image = image_in(frame), part.is_bilinear = is_convex(part.image);
   };
   if (n == 3) {
     add_triangle(0, 1, 2);
@@ -96,13 +100,14 @@ PlaneFace plane_face(const SurfaceMesh& mesh, std::int32_t f)
 
   const Point of_diagonals = (x[2] - x[0]).cross(x[3] - x[1]);
   if (!(of_diagonals.norm() > 2.0 * least_area)) return face;
-  face.mean = frame_of(0.25 * (x[0] + x[1] + x[2] + x[3]), x[2], of_diagonals.normalized());
-  for (std::size_t k = 0; k < 4; ++k) face.corner[k] = face.mean.coordinates(x[k]);
-  face.is_bilinear = is_convex(face.corner);
-  if (face.is_bilinear && cosine_of_warp(x, face.mean.normal, face.length) >= cosine_of_largest_warp) {
+  const Frame mean = frame_of(0.25 * (x[0] + x[1] + x[2] + x[3]), x[2], of_diagonals.normalized());
+  const auto image = image_in(mean);
+  if (is_convex(image) && cosine_of_warp(x, mean.normal, face.length) >= cosine_of_largest_warp) {
     face.n_parts = 1;
-    face.parts[0] = part_of(face.mean, x, local);
-  } else if (is_cut_from_1_to_3(face.corner)) {
+    face.parts[0] = part_of(mean, image, local);
+    face.parts[0].image = image;
+    face.parts[0].is_bilinear = true;
+  } else if (is_cut_from_1_to_3(image)) {
     add_triangle(1, 2, 3);
     add_triangle(1, 3, 0);
   } else {
@@ -112,11 +117,9 @@ PlaneFace plane_face(const SurfaceMesh& mesh, std::int32_t f)
   return face;
 }
 
-PlanePoint local_coordinates(const PlaneFace& face, const FacePart& part, const PlanePoint& point)
+PlanePoint local_coordinates(const FacePart& part, const PlanePoint& point)
 {
-  if (face.is_bilinear && face.n_parts == 1 && part.n == 4) return inverse_bilinear(face.corner, point);
-  if (face.is_bilinear) return inverse_bilinear(face.corner, face.mean.coordinates(part.frame.position(point)));
-
+  if (part.is_bilinear) return inverse_bilinear(part.image, point);
   std::array<double, 3> share; // barycentric coordinates: distances from the opposite edges over the heights
   double sum = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace mullion::surface {
@@ -30,8 +31,24 @@ struct Frame {
   Point origin, x, y, normal;
 
   [[nodiscard]] PlanePoint coordinates(const Point& p) const { return {(p - origin).dot(x), (p - origin).dot(y)}; }
-  [[nodiscard]] Point position(const PlanePoint& p) const { return origin + p[0] * x + p[1] * y; }
 };
+
+/// Where the line through a node along its normal meets a plane.
+struct NodeImage {
+  PlanePoint place; ///< [m]
+  double gap;       ///< distance from the node, along the normal [m]
+};
+
+/// A nodal normal that leaves the plane at less than 30 degrees, at a trailing edge say, is replaced by the plane's
+/// own: a gap would move the image by more than its double.
+[[nodiscard]] inline NodeImage image_of_node(const Frame& plane, const Point& x, const Point& nodal_normal)
+{
+  constexpr double least_slope = 0.5;
+  const double slope = plane.normal.dot(nodal_normal), height = plane.normal.dot(plane.origin - x);
+  if (std::abs(slope) < least_slope) return {plane.coordinates(x), height};
+  const double gap = height / slope;
+  return {plane.coordinates(x + gap * nodal_normal), gap};
+}
 
 /// A convex polygon in its plane: a face, or half of it.
 struct FacePart {
@@ -41,26 +58,28 @@ struct FacePart {
   PlaneCorners local{};              ///< local coordinates of the corners in the face
   std::array<HalfPlane, 4> inside{}; ///< left of each edge
   double area = 0.0;                 ///< [m^2]
+  bool is_bilinear = false; ///< of a quadrilateral whose image is convex: local coordinates are those of the image
+  PlaneCorners image{};     ///< if so: of the whole quadrilateral
 };
 
 /// A face in its plane or planes.
 struct PlaneFace {
   int n_parts = 0; ///< 0: the face is degenerate
   std::array<FacePart, 2> parts{};
-  bool is_bilinear = false; ///< a convex quadrilateral: local coordinates are found in the mean plane
-  Frame mean{};             ///< if so
-  PlaneCorners corner{};    ///< in the mean plane, if so
-  Point lo, hi;             ///< the face's box [m]
-  double length = 0.0;      ///< of the longest edge [m]
+  Point lo, hi;        ///< the face's box [m]
+  double length = 0.0; ///< of the longest edge [m]
 };
 
-/// A face of a mesh in its plane. A quadrilateral is cut in two if it is warped by more than 10 degrees (the normals at
-/// its corners against that of its mean plane) or has a corner that points inwards. Parts whose area is less than 1e-14
-/// of the square of the longest edge are left out.
-[[nodiscard]] PlaneFace plane_face(const SurfaceMesh& mesh, std::int32_t f);
+/// A face of a mesh in its plane. A quadrilateral is taken in its mean plane, its corners projected along the nodal
+/// normals (as those of the other side's faces are: identical faces have identical images). It is cut in two if it is
+/// warped by more than 10 degrees (the normals at its corners against that of its mean plane) or has a corner that
+/// points inwards. Parts whose area is less than 1e-14 of the square of the longest edge are left out.
+///
+/// @param normals  nodal_normals() of the mesh; not looked at for a triangle
+[[nodiscard]] PlaneFace plane_face(const SurfaceMesh& mesh, std::int32_t f, const Eigen::Matrix3Xd& normals);
 
 /// Local coordinates in the face of a point in the plane of one of its parts: bilinear in a convex quadrilateral, also
 /// if it is cut in two; else linear in the part. Never outside the face.
-[[nodiscard]] PlanePoint local_coordinates(const PlaneFace& face, const FacePart& part, const PlanePoint& point);
+[[nodiscard]] PlanePoint local_coordinates(const FacePart& part, const PlanePoint& point);
 
 } // namespace mullion::surface

@@ -326,7 +326,9 @@ OverlayReport overlay_polylines(const SurfaceMesh& source, const SurfaceMesh& ta
     return std::tuple(a.source_face, a.target_face, a.source_xi[0][0]) <
            std::tuple(b.source_face, b.target_face, b.source_xi[0][0]);
   });
-  for (const auto& piece : found.pieces) sink(piece);
+  const auto skipped = degenerate_faces(source);
+  for (const auto& piece : found.pieces)
+    if (!std::binary_search(skipped.begin(), skipped.end(), piece.source_face)) sink(piece);
   return report_on(sides, found, source_nodes, target_nodes);
 }
 

@@ -8,14 +8,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <utility>
+#include <vector>
 
 namespace mullion::surface {
 
 namespace {
 
 constexpr double least_cosine = 0.2;       // of the angle between the normals of two faces that may be a pair
-constexpr double least_slope = 0.5;        // of a nodal normal out of the plane; below: the plane's own normal
-constexpr double near_share = 0.1;         // of a face's size: how far the first search goes
+constexpr double near_share = 0.1;         // of the faces' sizes: how far the first search goes
+constexpr double wider = 4.0;              // each next one
 constexpr double sideways_share = 0.3;     // of the search's distance, along the plane: normals lean
 constexpr double piece_tolerance = 1e-14;  // of the smaller face's squared length: round-off of an area
 constexpr double vertex_tolerance = 1e-14; // of the smaller face's length: round-off of a place
@@ -57,26 +62,18 @@ bool find_image(const Target& target, std::int32_t t, const Frame& plane, double
 {
   const Point area_vector = twice_area_vector(target.mesh, t);
   const double twice_area = area_vector.norm();
-  const double slope_of_face = plane.normal.dot(area_vector) / twice_area; // > 0: degenerate faces are not in the tree
+  const double slope_of_face = plane.normal.dot(area_vector) / twice_area; // the tree has no degenerate faces
   if ((target.is_opposite ? -slope_of_face : slope_of_face) < least_cosine) return false;
 
   const auto nodes = target.mesh.face(t);
   const std::size_t n = nodes.size();
   const auto& local = local_corners(n);
-  double least = 1e300, largest = -1e300;
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t j = target.is_opposite ? (n - k) % n : k;
-    const Point x = node_place(target.mesh, nodes[j]);
-    Point along = target.normals.col(nodes[j]);
-    double slope = plane.normal.dot(along);
-    if (std::abs(slope) < least_slope) { // at trailing edges, say: a gap would move the point by more than its double
-      along = plane.normal;
-      slope = 1.0;
-    }
-    const double gap = plane.normal.dot(plane.origin - x) / slope;
-    const auto [a, b] = plane.coordinates(x + gap * along);
-    image.vertex[k] = {a, b, local[j][0], local[j][1], gap};
-    image.corner[k] = {a, b};
+    const auto [at, gap] = image_of_node(plane, node_place(target.mesh, nodes[j]), target.normals.col(nodes[j]));
+    image.vertex[k] = {at[0], at[1], local[j][0], local[j][1], gap};
+    image.corner[k] = at;
     least = std::min(least, gap);
     largest = std::max(largest, gap);
   }
@@ -180,7 +177,7 @@ public:
     double best_reach = near_share * face.length, reach = best_reach;
     double best = search(f, face, reach), coverage = best;
     while (coverage < full_coverage && reach < gap_tolerance_) {
-      reach = std::min(4.0 * reach, gap_tolerance_);
+      reach = std::min(wider * reach, gap_tolerance_);
       coverage = search(f, face, reach);
       if (std::abs(coverage - 1.0) < std::abs(best - 1.0)) {
         best = coverage;
@@ -230,15 +227,14 @@ private:
         const double square = std::min(face.length * face.length, image.square);
         std::array<ClipPolygon, 2> polygons;
         const int n = convex_polygons(image, polygons);
-        for (int i = 0; i < n; ++i)
-          covered += cut(f, t, face, part, image, square, polygons[static_cast<std::size_t>(i)]);
+        for (int i = 0; i < n; ++i) covered += cut(f, t, part, image, square, polygons[static_cast<std::size_t>(i)]);
       }
     return covered / area;
   }
 
   /// The piece that a polygon of the image and a part of the source face have in common; returns its area.
-  double cut(std::int32_t f, std::int32_t t, const PlaneFace& face, const FacePart& part, const Image& image,
-             double square, ClipPolygon& polygon)
+  double cut(std::int32_t f, std::int32_t t, const FacePart& part, const Image& image, double square,
+             ClipPolygon& polygon)
   {
     for (int k = 0; k < part.n && polygon.n > 0; ++k) clip(polygon, part.inside[static_cast<std::size_t>(k)]);
     if (polygon.n < 3) return 0.0;
@@ -252,7 +248,7 @@ private:
     piece.n_vertices = polygon.n;
     for (int v = 0; v < polygon.n; ++v) {
       const ClipVertex& vertex = polygon.vertices[static_cast<std::size_t>(v)];
-      const auto in_source = local_coordinates(face, part, {vertex.x, vertex.y});
+      const auto in_source = local_coordinates(part, {vertex.x, vertex.y});
       const auto in_target = target_local(image, target_.is_opposite, vertex);
       for (std::size_t c = 0; c < 2; ++c) {
         piece.source_xi[v][c] = in_source[c];
@@ -290,12 +286,15 @@ OverlayReport overlay_surfaces(const SurfaceMesh& source, const SurfaceMesh& tar
                                    ? options.gap_tolerance
                                    : 2.0 * std::max(mean_face_size(source), mean_face_size(target));
 
+  const bool has_quadrilaterals = static_cast<std::int64_t>(source.face_nodes.size()) != 3 * source.n_faces();
+  const Eigen::Matrix3Xd source_normals = has_quadrilaterals ? nodal_normals(source) : Eigen::Matrix3Xd();
+
   Overlay overlay(source, side, gap_tolerance);
   double area = 0.0, covered_area = 0.0, target_area = 0.0;
   bool is_first = true;
   for (std::int32_t f = 0; f < source.n_faces(); ++f) {
     const bool is_degenerate = std::binary_search(degenerate_source.begin(), degenerate_source.end(), f);
-    const PlaneFace face = is_degenerate ? PlaneFace{} : plane_face(source, f);
+    const PlaneFace face = is_degenerate ? PlaneFace{} : plane_face(source, f, source_normals);
     if (face.n_parts == 0) {
       report.skipped_source_faces.add(f);
       continue;

@@ -10,8 +10,11 @@
 namespace mullion::surface {
 
 struct SurfaceOverlayOptions {
-  double gap_tolerance = 0.0;   ///< largest distance of paired points [m]; 0: twice the larger mean face size
-  std::optional<bool> opposite; ///< the sides' normals point against each other; not given: found, see below
+  /// Largest distance of paired points [m]; 0: twice the larger of the two meshes' mean face sizes.
+  double gap_tolerance = 0.0;
+  /// The sides' normals point against each other. Not given: as most of up to 500 source faces do against the target
+  /// face that is closest to each; for bodies thinner than the gap between the two meshes it has to be given.
+  std::optional<bool> opposite = std::nullopt;
 };
 
 /// Overlay two surfaces and hand out the pieces, source face by source face.
@@ -28,27 +31,27 @@ struct SurfaceOverlayOptions {
 /// as well; here neighbouring source faces leave out, or cover twice, a share O(h^2) of the target.
 ///
 /// The pairing is exact for planes, and off by O(h^3) along the surface where both meshes interpolate one smooth
-/// surface; where they stand off by d it is as good as the normals, O(d h) (O(d h^2) on spheres).
+/// surface; where they stand off by d it is as good as the normals, O(d h) (O(d h^2) on spheres, but for the rim).
 ///
-/// - A pair of faces counts if the normals are within 78 degrees of each other (the other sheet of a thin body does
-///   not) and the distance along the normals is within the tolerance. The layers within a tenth of the faces' sizes
-///   are asked first; only a source face that they do not cover looks further.
-/// - A source quadrilateral is taken in its mean plane, by halves if it is warped by more than 10 degrees or has a
-///   corner that points inwards. Local coordinates are bilinear also then, but with an inward corner linear by halves.
+/// - A pair of faces counts if their normals are within 78 degrees of each other, so that the other sheet of a thin
+///   body does not, and the distance along the nodal normals is within the tolerance. The search begins within a tenth
+///   of the faces' sizes and goes on, four times as far each time, only for a source face that is not covered; what
+///   covers it best counts. So a second layer behind the first one does not.
+/// - A source quadrilateral is taken in its mean plane, or by halves: see plane_face(). The image of a target
+///   quadrilateral is cut in two if a corner of it points inwards. Local coordinates are those of the bilinear map of
+///   the images' corners, in halves of a face with an inward corner linear.
 /// - Pieces smaller than 1e-14 of the smaller face's squared length are dropped. Degenerate faces are skipped.
-/// - A source face that is covered by less than 1e-6 counts as uncovered: its pieces are then the triangles from its
-///   centre to its edges, each attached to the one point of the target that is closest to the triangle's centre.
-///   A face covered in part keeps its pieces; whoever assembles scales them.
-/// - The orientation, unless given, is that of up to 500 source faces against the target face closest to each. For
-///   bodies thinner than the gap between the two meshes it has to be given.
+/// - A source face that is covered by less than 1e-6 counts as uncovered and has no pieces. A face covered in part has
+///   some; whoever assembles scales them, or sends the rest elsewhere.
 ///
-/// Within a piece positions are linear between the vertices; local coordinates of a quadrilateral are not: see
-/// interpolate_local().
+/// Within a piece places are linear between the vertices; local coordinates are so in triangles only. Whoever
+/// integrates over the piece finds those of a quadrilateral from the place (invert_quadrilateral()), or linear fields
+/// are not reproduced.
 ///
 /// @param source, target  in 3D; @pre complaint_about() has none
 /// @param sink            gets every piece; ascending source faces, ascending target faces within
-/// @return                coverages: areas in the source face's plane over the face's own. Without target faces all
-///                        source faces are uncovered and nothing is handed out
+/// @return                coverage is the area of a face's pieces over its own, both in its plane. Neither features nor
+///                        source nodes are matched: their lists stay empty
 OverlayReport overlay_surfaces(const SurfaceMesh& source, const SurfaceMesh& target,
                                const SurfaceOverlayOptions& options, const SubelementSink& sink);
 

@@ -14,6 +14,7 @@ struct RunOptions {
   bool replay = false; ///< every step twice from restored windows, compared byte for byte
   int amnesia = 0;     ///< every K-th step again by fresh processes and a new driver; 0: never
   bool has_deadlines = true;
+  bool has_summary = true;
   std::string log_level = "info";
 };
 

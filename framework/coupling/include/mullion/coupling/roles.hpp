@@ -21,6 +21,8 @@ struct FsiOptions {
   std::string profile = "constant";
   std::string sampling = "last";
   std::string load_interpolation = "linear";
+  std::string fluid_exports = "traction", structure_receives = "traction";
+  bool recover = false;
 
   static constexpr auto motion_option()
   {
@@ -48,6 +50,17 @@ struct FsiOptions {
                                 "load within the structure's substeps: linear from the last step's, or constant",
                                 one_of("linear", "constant"))};
   }
+  static constexpr auto exchange_options()
+  {
+    return std::tuple{
+        parameter("fluid_exports", &FsiOptions::fluid_exports, "",
+                  "what the fluid's wall offers: traction (one value a face), nodal_traction, or load (nodal forces)",
+                  one_of("traction", "nodal_traction", "load")),
+        parameter("structure_receives", &FsiOptions::structure_receives, "",
+                  "what the structure takes: traction, or load (nodal forces)", one_of("traction", "load")),
+        parameter("recover", &FsiOptions::recover, "",
+                  "allow a traction that is recovered from the fluid's nodal forces")};
+  }
   [[nodiscard]] bool is_profile_linear() const { return profile == "linear"; }
   /// Net lag of the sampling [steps], where the structure takes the value for the step's end.
   [[nodiscard]] double sampling_lag() const { return sampling == "mean" ? 0.5 : 0.0; }
@@ -64,8 +77,21 @@ struct FsiNames {
   std::string wall, wet;                               ///< interface windows, instance.window
   std::string motion;                                  ///< "velocity" or "displacement"
   std::string traction;                                ///< the fluid's output that goes across, instance.window.field
+  std::string exported;                                ///< its name on the transfer: "traction", …
+  std::string load;                                    ///< what the structure receives, instance.window.field
+  std::string received;                                ///< its name on the transfer: "traction" or "load"
   FsiWiring wiring;
 };
+
+/// A traction where nodal forces are meant is wrong by an area, and nobody would see it in the numbers.
+/// @throws Error Errc::config with the reason
+inline void require_legal_exchange(const FsiOptions& options)
+{
+  MULLION_REQUIRE(options.fluid_exports != "load" || options.structure_receives == "load" || options.recover,
+                  Errc::config,
+                  "fluid_exports = \"load\" with structure_receives = \"traction\": nodal forces are no traction; let "
+                  "the structure receive the load, or allow a traction that is recovered from it: recover = true");
+}
 
 /// Declare the shared connections.
 inline FsiNames wire_fsi(Wiring& wiring, const FsiOptions& options, FsiWiring extra = {})
@@ -78,13 +104,18 @@ inline FsiNames wire_fsi(Wiring& wiring, const FsiOptions& options, FsiWiring ex
                  wiring.interfaces()[0].fluid,
                  wiring.interfaces()[0].structure,
                  options.motion,
-                 wiring.interfaces()[0].fluid + (options.sampling == "mean" ? ".traction_mean" : ".traction"),
+                 wiring.interfaces()[0].fluid + "." + options.fluid_exports +
+                     (options.sampling == "mean" ? "_mean" : ""),
+                 options.fluid_exports,
+                 wiring.interfaces()[0].structure + "." + options.structure_receives,
+                 options.structure_receives,
                  extra};
+  require_legal_exchange(options);
   const auto moved = names.transfer + ".fluid_side." + options.motion;
 
   wiring.store(names.transfer + ".structure_side." + options.motion);
-  if (extra.corrects_on_fluid) wiring.store(names.transfer + ".fluid_side.traction");
-  else wiring.bind(names.transfer + ".fluid_side.traction", names.traction);
+  if (extra.corrects_on_fluid) wiring.store(names.transfer + ".fluid_side." + names.exported);
+  else wiring.bind(names.transfer + ".fluid_side." + names.exported, names.traction);
   if (!is_velocity) wiring.bind(names.wall + "." + options.motion, moved);
   else if (extra.corrects_on_fluid) wiring.store(names.mesh_motion + ".wall.velocity");
   else wiring.bind(names.mesh_motion + ".wall.velocity", moved);
@@ -92,8 +123,7 @@ inline FsiNames wire_fsi(Wiring& wiring, const FsiOptions& options, FsiWiring ex
     wiring.bind(names.fluid + ".volume.velocity", names.mesh_motion + ".volume.velocity",
                 options.is_profile_linear() ? TimePolicy::linear : TimePolicy::constant);
   if (extra.sends_evaluation_velocity) wiring.store(names.wall + ".evaluation_velocity");
-  wiring.store(names.wet + ".traction",
-               options.load_interpolation == "linear" ? TimePolicy::linear : TimePolicy::constant);
+  wiring.store(names.load, options.load_interpolation == "linear" ? TimePolicy::linear : TimePolicy::constant);
   return names;
 }
 
@@ -118,9 +148,9 @@ struct FsiRoles {
         transfer_loads(coupling.action(names.transfer, "loads")),
         transfer_motion(coupling.action(names.transfer, "motion")),
         structure_motion(coupling.field(names.wet + "." + names.motion)),
-        load_on_structure(coupling.field(names.transfer + ".structure_side.traction")),
+        load_on_structure(coupling.field(names.transfer + ".structure_side." + names.received)),
         motion_on_fluid(coupling.field(names.transfer + ".fluid_side." + names.motion)),
-        fluid_traction(coupling.field(names.traction)), structure_load(coupling.received(names.wet + ".traction")),
+        fluid_traction(coupling.field(names.traction)), structure_load(coupling.received(names.load)),
         sent_motion(coupling.received(names.transfer + ".structure_side." + names.motion)), wiring(names.wiring),
         has_mesh_motion(!names.mesh_motion.empty())
   {
@@ -128,7 +158,7 @@ struct FsiRoles {
     if (wiring.sends_evaluation_velocity) evaluation_velocity = coupling.received(names.wall + ".evaluation_velocity");
     if (!wiring.corrects_on_fluid) return;
     wall_velocity = coupling.received(names.mesh_motion + ".wall.velocity");
-    wall_traction = coupling.received(names.transfer + ".fluid_side.traction");
+    wall_traction = coupling.received(names.transfer + ".fluid_side." + names.exported);
   }
 
   /// The first exchange, in the order in which the initial states need one another: the fluid's first traction on

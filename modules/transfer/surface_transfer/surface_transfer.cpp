@@ -1,0 +1,257 @@
+#include "surface_transfer.hpp"
+
+#include "surface/shape_functions.hpp"
+
+#include <algorithm>
+
+namespace mullion::surface_transfer {
+
+using surface::SurfaceMesh;
+
+namespace {
+
+/// Views of a window as the kernels take them.
+surface::FieldView view(const ConstArray& values) { return {values}; }
+
+} // namespace
+
+Pairing pairing_by_nodes(const SurfaceMesh& fluid, const SurfaceMesh& structure, surface::Operator projection)
+{
+  Pairing pairing;
+  pairing.loads_of_nodes = surface::projected_load_operator(fluid, projection, surface::Location::nodes);
+  pairing.loads_of_faces = surface::projected_load_operator(fluid, projection, surface::Location::faces);
+  pairing.structure_mass = surface::native_mass(structure);
+  auto& report = pairing.report;
+  std::vector<bool> is_reached(static_cast<std::size_t>(structure.n_nodes()), false);
+  for (int row = 0; row < projection.outerSize(); ++row) {
+    surface::Point place = surface::Point::Zero();
+    for (surface::Operator::InnerIterator entry(projection, row); entry; ++entry) {
+      if (entry.value() != 0.0) is_reached[static_cast<std::size_t>(entry.col())] = true;
+      place += entry.value() * surface::node_position(structure, entry.col());
+    }
+    report.largest_gap = std::max(report.largest_gap, (place - surface::node_position(fluid, row)).norm());
+  }
+  for (std::size_t node = 0; node < is_reached.size(); ++node)
+    if (!is_reached[node]) report.unmatched_target_nodes.add(static_cast<std::int32_t>(node));
+  pairing.motion = std::move(projection);
+  return pairing;
+}
+
+surface::OverlayReport report_of_points(const SurfaceMesh& fluid, const SurfaceMesh& structure,
+                                        const surface::PointSet& set)
+{
+  surface::OverlayReport report;
+  for (const auto& point : set.points) {
+    const auto here = surface::map_to_space(fluid, point.source_face, point.source_xi);
+    const auto there = surface::map_to_space(structure, point.target_face, point.target_xi);
+    report.largest_gap = std::max(report.largest_gap, (here - there).norm());
+  }
+  std::vector<bool> is_reached(static_cast<std::size_t>(structure.n_nodes()), false);
+  for (const auto& point : set.points)
+    for (const auto node : structure.face(point.target_face)) is_reached[static_cast<std::size_t>(node)] = true;
+  for (std::size_t node = 0; node < is_reached.size(); ++node)
+    if (!is_reached[node]) report.unmatched_target_nodes.add(static_cast<std::int32_t>(node));
+  return report;
+}
+
+std::vector<FieldSpec> SurfaceTransfer::fields()
+{
+  using enum Location;
+  const char* s = "structure_side";
+  return {
+      output(s, "traction", node, vector, "Pa", "acts on the structure"),
+      output(s, "load", node, vector, "N", "acts on the structure's nodes; in 2D per metre of depth").extensive(),
+      output(s, "force", pane, vector, "N", "sum of the loads"),
+      output(s, "moment", pane, 3, "N m", "of the loads about the origin"),
+      output(s, "fluid_force", pane, vector, "N", "integral of the fluid's traction over its own surface"),
+      output(s, "fluid_moment", pane, 3, "N m", "the same of the moment"),
+      output(s, "power", pane, scalar, "W",
+             "of the loads on the structure's velocity; on its displacement, if that is "
+             "what is received: the work"),
+      output(s, "fluid_power", pane, scalar, "W", "of the fluid's traction on the motion that the fluid gets"),
+      output(s, "area", pane, scalar, "m^2", "of the structure's surface; in 2D its length"),
+      output(s, "fluid_area", pane, scalar, "m^2", "of the fluid's surface; in 2D its length"),
+      output(s, "least_coverage", pane, scalar, "1", "of a fluid face by the structure, before any scaling"),
+      output(s, "covered_fraction", pane, scalar, "1", "of the fluid's surface that has a counterpart"),
+      output(s, "largest_gap", pane, scalar, "m", "between paired points"),
+      output(s, "unmatched_nodes", pane, scalar, "1", "nodes of both sides without a counterpart"),
+      output("fluid_side", "velocity", node, vector, "m/s", "of the wall; 0 if none is received"),
+      output("fluid_side", "displacement", node, vector, "m", "of the wall; 0 if none is received"),
+  };
+}
+
+std::vector<InputSpec> SurfaceTransfer::inputs()
+{
+  using enum Location;
+  return {
+      receive("fluid_side", "traction", element, vector, "Pa", "acts on the structure, one value a face").optional(),
+      receive("fluid_side", "nodal_traction", node, vector, "Pa", "acts on the structure, linear between nodes")
+          .optional(),
+      receive("fluid_side", "load", node, vector, "N", "forces of the fluid's nodes").extensive().optional(),
+      receive("structure_side", "velocity", node, vector, "m/s", "of the wet surface").optional(),
+      receive("structure_side", "displacement", node, vector, "m", "of the wet surface").optional(),
+  };
+}
+
+void SurfaceTransfer::define(const TimeStep&)
+{
+  const auto fluid = peer_pane("fluid", ""), structure = peer_pane("structure", "");
+  make_window("fluid_side", {fluid});
+  make_window("structure_side", {structure});
+  for (const auto& spec : fields()) field(spec.window, spec.name).now().setZero();
+}
+
+void SurfaceTransfer::attach()
+{
+  fluid_mesh_ = mesh_of("fluid_side");
+  structure_mesh_ = mesh_of("structure_side");
+  MULLION_REQUIRE(fluid_mesh_.dimension == structure_mesh_.dimension, Errc::shape,
+                  "the fluid's interface has {} coordinates a node, the structure's {}", fluid_mesh_.dimension,
+                  structure_mesh_.dimension);
+  pairing_ = pair(fluid_mesh_, structure_mesh_);
+  report_misfit();
+  structure_mass_ = surface::mass_matrix(pairing_.structure_mass);
+  MULLION_REQUIRE(structure_mass_.is_solvable, Errc::numeric,
+                  "the structure's mass matrix on the interface cannot be factorised; is its surface folded?");
+  if (pairing_.fluid_mass.nonZeros() > 0) fluid_mass_ = surface::mass_matrix(pairing_.fluid_mass);
+  forces_of_nodes_ = pairing_.fluid_mass.nonZeros() > 0 ? pairing_.fluid_mass : surface::native_mass(fluid_mesh_);
+  forces_of_faces_ = surface::face_split(fluid_mesh_);
+  fluid_measure_ = surface::total_measure(fluid_mesh_);
+  structure_measure_ = surface::total_measure(structure_mesh_);
+
+  const auto own = [&](const char* name) { return field("structure_side", name); };
+  traction_ = own("traction"), load_ = own("load");
+  force_ = own("force"), moment_ = own("moment");
+  fluid_force_ = own("fluid_force"), fluid_moment_ = own("fluid_moment");
+  power_ = own("power"), fluid_power_ = own("fluid_power");
+  measure_ = own("area"), fluid_measure_field_ = own("fluid_area");
+  coverage_ = own("least_coverage"), covered_fraction_ = own("covered_fraction");
+  gap_ = own("largest_gap"), unmatched_ = own("unmatched_nodes");
+  velocity_ = field("fluid_side", "velocity");
+  displacement_ = field("fluid_side", "displacement");
+  received_traction_ = input("fluid_side", "traction");
+  received_nodal_traction_ = input("fluid_side", "nodal_traction");
+  received_load_ = input("fluid_side", "load");
+  received_velocity_ = input("structure_side", "velocity");
+  received_displacement_ = input("structure_side", "displacement");
+}
+
+SurfaceMesh SurfaceTransfer::mesh_of(const std::string& window) const
+{
+  const auto mesh_pane = pane(window);
+  SurfaceMesh mesh;
+  mesh.dimension = static_cast<int>(mesh_pane.coordinates.rows());
+  mesh.nodes = mesh_pane.coordinates;
+  mesh.face_begin.push_back(0);
+  for (const auto& block : mesh_pane.blocks) {
+    MULLION_REQUIRE(block.type != ElementType::point1, Errc::shape,
+                    "it joins lines and surfaces; {} consists of points: use point_transfer", window);
+    for (Eigen::Index e = 0; e < block.connectivity.cols(); ++e) {
+      for (Eigen::Index k = 0; k < block.connectivity.rows(); ++k) mesh.face_nodes.push_back(block.connectivity(k, e));
+      mesh.face_begin.push_back(static_cast<std::int32_t>(mesh.face_nodes.size()));
+    }
+  }
+  const auto complaint = surface::complaint_about(mesh);
+  MULLION_REQUIRE(complaint.empty(), Errc::shape, "{}: {}", window, complaint);
+  return mesh;
+}
+
+void SurfaceTransfer::report_misfit() const
+{
+  surface::Tolerances tolerances;
+  tolerances.gap_error = options_.gap_tolerance;
+  tolerances.gap_warning = 0.25 * options_.gap_tolerance;
+  auto verdict = surface::judge(fluid_mesh_, structure_mesh_, pairing_.report, tolerances);
+  if (options_.on_misfit == "error" && !verdict.errors.empty()) {
+    std::string text;
+    for (const auto& error : verdict.errors) text += (text.empty() ? "" : "; ") + error;
+    throw Error(Errc::shape, fmt::format("the two interfaces do not fit: {} (on_misfit = \"warn\" couples them all the "
+                                         "same)",
+                                         text));
+  }
+  verdict.warnings.insert(verdict.warnings.end(), verdict.errors.begin(), verdict.errors.end());
+  for (const auto& warning : verdict.warnings) log().warning("{}", warning);
+}
+
+// ---- loads -------------------------------------------------------------------------------------------------------
+
+surface::Field SurfaceTransfer::loads_on_structure() const
+{
+  if (received_traction_.is_connected())
+    return surface::apply(pairing_.loads_of_faces, view(received_traction_.newest()));
+  if (received_nodal_traction_.is_connected())
+    return surface::apply(pairing_.loads_of_nodes, view(received_nodal_traction_.newest()));
+  MULLION_REQUIRE(received_load_.is_connected(), Errc::config,
+                  "the driver connects neither traction nor nodal_traction nor load to fluid_side");
+  if (fluid_mass_.factors == nullptr) return surface::apply_transposed(pairing_.motion, view(received_load_.newest()));
+  return surface::loads_from_loads(pairing_.loads_of_nodes, fluid_mass_, view(received_load_.newest()));
+}
+
+surface::Field SurfaceTransfer::forces_on_fluid() const
+{
+  if (received_traction_.is_connected()) return surface::apply(forces_of_faces_, view(received_traction_.newest()));
+  if (received_nodal_traction_.is_connected())
+    return surface::apply(forces_of_nodes_, view(received_nodal_traction_.newest()));
+  return view(received_load_.newest());
+}
+
+surface::Resultant SurfaceTransfer::fluid_resultant() const
+{
+  if (received_traction_.is_connected())
+    return surface::resultant_of_traction(fluid_mesh_, view(received_traction_.newest()), surface::Location::faces);
+  if (received_nodal_traction_.is_connected())
+    return surface::resultant_of_traction(fluid_mesh_, view(received_nodal_traction_.newest()),
+                                          surface::Location::nodes);
+  return surface::resultant_of_loads(fluid_mesh_, view(received_load_.newest()));
+}
+
+void SurfaceTransfer::loads(const TimeStep&)
+{
+  const surface::Field loads = loads_on_structure();
+  load_.now() = loads;
+  traction_.now() =
+      surface::recover(structure_mass_, loads,
+                       options_.recovery == "consistent" ? surface::Recovery::consistent : surface::Recovery::lumped);
+  const auto received = surface::resultant_of_loads(structure_mesh_, loads), given = fluid_resultant();
+  const auto n = structure_mesh_.dimension;
+  force_.now().col(0) = received.force.head(n), fluid_force_.now().col(0) = given.force.head(n);
+  moment_.now().col(0) = received.moment, fluid_moment_.now().col(0) = given.moment;
+
+  const auto& motion = received_velocity_.is_connected() ? received_velocity_ : received_displacement_;
+  if (motion.is_connected()) {
+    power_.now()(0, 0) = surface::work_of(loads, view(motion.newest()));
+    fluid_power_.now()(0, 0) = surface::work_of(forces_on_fluid(), motion_of_fluid(motion.newest()));
+  } else {
+    power_.now()(0, 0) = fluid_power_.now()(0, 0) = 0.0;
+  }
+
+  measure_.now()(0, 0) = structure_measure_;
+  fluid_measure_field_.now()(0, 0) = fluid_measure_;
+  const auto& report = pairing_.report;
+  coverage_.now()(0, 0) = report.min_coverage;
+  covered_fraction_.now()(0, 0) = report.covered_fraction;
+  gap_.now()(0, 0) = report.largest_gap;
+  unmatched_.now()(0, 0) =
+      static_cast<double>(report.unmatched_source_nodes.count + report.unmatched_target_nodes.count);
+}
+
+// ---- motion ------------------------------------------------------------------------------------------------------
+
+surface::Field SurfaceTransfer::motion_of_fluid(const ConstArray& structure_motion) const
+{
+  if (options_.motion == "adjoint" && fluid_mass_.factors != nullptr)
+    return surface::adjoint_motion(pairing_.loads_of_nodes, fluid_mass_, view(structure_motion));
+  return surface::apply(pairing_.motion, view(structure_motion));
+}
+
+void SurfaceTransfer::motion(const TimeStep&)
+{
+  const auto carry = [&](const Input& received, const Field& result) {
+    if (received.is_connected()) result.now() = motion_of_fluid(received.newest());
+    else result.now().setZero();
+  };
+  carry(received_velocity_, velocity_);
+  carry(received_displacement_, displacement_);
+}
+
+} // namespace mullion::surface_transfer
