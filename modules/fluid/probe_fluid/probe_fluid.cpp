@@ -42,8 +42,8 @@ std::vector<FieldSpec> ProbeFluid::fields()
       output(w, "traction", element, vector, "Pa", "the function at the face's centre; acts on the structure"),
       output(w, "nodal_traction", node, vector, "Pa", "the function at the node, with the mean normal"),
       output(w, "load", node, vector, "N", "integral of the function with the node's shape function").extensive(),
-      output(w, "motion_error_l2", pane, scalar, "1", "of the received motion, mean over the surface, in its unit"),
-      output(w, "motion_error_max", pane, scalar, "1", "of the received motion, over the nodes, in its unit"),
+      output(w, "motion_error_l2", pane, scalar, "1", "of the received motion, mean over the surface, relative"),
+      output(w, "motion_error_max", pane, scalar, "1", "of the received motion, over the nodes, relative"),
       output(w, "area", pane, scalar, "m^2", "of the surface; in 2D its length"),
       output(w, "force", pane, vector, "N", "of the field that on names"),
       output(w, "moment", pane, 3, "N m", "the same about the origin"),
@@ -119,13 +119,13 @@ void ProbeFluid::write_resultant() const
 void ProbeFluid::write_motion(double t, bool is_received) const
 {
   double power = 0.0;
-  probes::NodalError error;
+  probes::NodalNorms error;
   const Input& motion = velocity_.is_connected() ? velocity_ : displacement_;
   if (is_received && motion.is_connected()) {
     const auto received = motion.newest();
     const auto expected = probes::on_nodes(
         surface_, [&](const Eigen::VectorXd& x, const Eigen::VectorXd& n) { return (*expected_motion_)(x, n, t); });
-    error = probes::nodal_error(surface_, received - expected);
+    error = probes::relative_error(surface_, received, expected);
     if (options_.on == "load") power = surface::work_of(load_.now(), received);
     else if (options_.on == "faces")
       power = probes::power_of_traction(surface_, traction_.now(), surface::Location::faces, received);

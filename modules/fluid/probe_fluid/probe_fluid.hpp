@@ -51,12 +51,11 @@ public:
 
   void define(const TimeStep& initial) override;
   void attach() override;
-  void start(const TimeStep& initial) override { write(initial.end, true); }
   void step(const TimeStep& step) override { write(step.end, true); }
 
 private:
   void look_up();
-  /// All fields, for time t; before start() nothing is received.
+  /// All fields, for time t; in define nothing is received yet.
   void write(double t, bool is_received) const;
   void write_resultant() const;
   void write_motion(double t, bool is_received) const;

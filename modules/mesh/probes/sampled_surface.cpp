@@ -101,16 +101,25 @@ double power_of_traction(const SampledSurface& s, const FieldView& traction, sur
   return power;
 }
 
-NodalError nodal_error(const SampledSurface& s, const FieldView& difference)
+NodalNorms norms_of(const SampledSurface& s, const FieldView& values)
 {
   double squares = 0.0, area = 0.0, largest = 0.0;
-  for (Eigen::Index i = 0; i < difference.cols(); ++i) {
-    const double square = difference.col(i).squaredNorm();
+  for (Eigen::Index i = 0; i < values.cols(); ++i) {
+    const double square = values.col(i).squaredNorm();
     squares += s.weights[i] * square;
     area += s.weights[i];
     largest = std::max(largest, square);
   }
   return {area > 0.0 ? std::sqrt(squares / area) : 0.0, std::sqrt(largest)}; // no area: nothing to be off
+}
+
+NodalNorms relative_error(const SampledSurface& s, const FieldView& received, const FieldView& expected)
+{
+  auto error = norms_of(s, received - expected);
+  const auto scale = norms_of(s, expected);
+  if (scale.l2 > 0.0) error.l2 /= scale.l2;
+  if (scale.max > 0.0) error.max /= scale.max;
+  return error;
 }
 
 Field per_weight(const SampledSurface& s, const FieldView& loads)

@@ -58,14 +58,17 @@ template <class Blocks> surface::SurfaceMesh faces_of(const Eigen::MatrixXd& nod
 [[nodiscard]] double power_of_traction(const SampledSurface& s, const FieldView& traction, surface::Location location,
                                        const FieldView& motion);
 
-/// How far a nodal field is off.
-struct NodalError {
-  double l2 = 0.0;  ///< sqrt(sum_i w_i |e_i|^2 / sum_i w_i)
-  double max = 0.0; ///< of |e_i|
+/// Size of a nodal field.
+struct NodalNorms {
+  double l2 = 0.0;  ///< sqrt(sum_i w_i |f_i|^2 / sum_i w_i)
+  double max = 0.0; ///< of |f_i|
 };
 
-/// @param difference  (components x nodes)
-[[nodiscard]] NodalError nodal_error(const SampledSurface& s, const FieldView& difference);
+/// @param values  (components x nodes)
+[[nodiscard]] NodalNorms norms_of(const SampledSurface& s, const FieldView& values);
+
+/// Norms of the difference, each relative to that of what is expected; where that is 0 everywhere, absolute.
+[[nodiscard]] NodalNorms relative_error(const SampledSurface& s, const FieldView& received, const FieldView& expected);
 
 /// Nodal loads as a traction: R_i / w_i.
 [[nodiscard]] Field per_weight(const SampledSurface& s, const FieldView& loads);

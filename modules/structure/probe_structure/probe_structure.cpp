@@ -40,9 +40,9 @@ std::vector<FieldSpec> ProbeStructure::fields()
   const char* w = "wet";
   return {
       state(w, "displacement", node, vector, "m", "the function").overwritten(),
-      state(w, "velocity", node, vector, "m/s", "as given").overwritten(),
-      output(w, "load_error_l2", pane, scalar, "Pa", "of the received traction, mean over the surface"),
-      output(w, "load_error_max", pane, scalar, "Pa", "of the received traction, over the nodes"),
+      state(w, "velocity", node, vector, "m/s", "velocity, or the function").overwritten(),
+      output(w, "load_error_l2", pane, scalar, "1", "of the received traction, mean over the surface, relative"),
+      output(w, "load_error_max", pane, scalar, "1", "of the received traction, over the nodes, relative"),
       output(w, "area", pane, scalar, "m^2", "of the surface; in 2D its length"),
       output(w, "force", pane, vector, "N", "sum of the received loads, or integral of the received traction"),
       output(w, "moment", pane, 3, "N m", "the same about the origin"),
@@ -74,7 +74,8 @@ void ProbeStructure::look_up()
   surface_ = probes::sampled(std::move(mesh), options_.reverse_normal);
   const auto dimension = wet.coordinates.rows();
   function_ = compiled("function", options_.function, "components", dimension);
-  velocity_function_ = compiled("velocity", options_.velocity, "components", dimension);
+  velocity_function_ =
+      compiled("velocity", options_.velocity.empty() ? options_.function : options_.velocity, "components", dimension);
   expected_traction_ = compiled("expected_traction", options_.expected_traction, options_.along, dimension);
   displacement_ = field("wet", "displacement");
   velocity_ = field("wet", "velocity");
@@ -110,18 +111,19 @@ void ProbeStructure::write_received(double t, bool is_received) const
   };
   surface::Resultant sum;
   double power = 0.0;
-  probes::NodalError error;
+  probes::NodalNorms error;
   if (is_received && load_.is_connected()) {
     sum = surface::resultant_of_loads(surface_.mesh, load_.newest());
     power = surface::work_of(load_.newest(), velocity_.now());
-    error = probes::nodal_error(surface_, probes::per_weight(surface_, load_.newest() - probes::loads_of(surface_, f)));
+    error = probes::relative_error(surface_, probes::per_weight(surface_, load_.newest()),
+                                   probes::per_weight(surface_, probes::loads_of(surface_, f)));
   } else if (is_received && traction_.is_connected()) {
     const auto at_nodes = surface::Location::nodes;
     sum = surface::resultant_of_traction(surface_.mesh, traction_.newest(), at_nodes);
     power = probes::power_of_traction(surface_, traction_.newest(), at_nodes, velocity_.now());
   }
   if (is_received && traction_.is_connected()) // where both come, the traction is what is compared
-    error = probes::nodal_error(surface_, traction_.newest() - probes::on_nodes(surface_, f));
+    error = probes::relative_error(surface_, traction_.newest(), probes::on_nodes(surface_, f));
   load_error_l2_.now()(0, 0) = error.l2;
   load_error_max_.now()(0, 0) = error.max;
   force_.now() = sum.force.head(surface_.mesh.dimension);

@@ -30,9 +30,10 @@ public:
       return std::tuple{
           required_parameter("mesh", &Options::mesh, "", "a file .msh, .vtk or .vtu, or a generator's text"),
           parameter("group", &Options::group, "", "the mesh's group that is the surface; empty: the whole mesh"),
-          parameter("function", &Options::function, "m",
-                    "displacement: expressions of x, y, z, t with ; between them, one a dimension; empty: zero"),
-          parameter("velocity", &Options::velocity, "m/s", "the same for the velocity"),
+          parameter("function", &Options::function, "",
+                    "displacement in m, and velocity in m/s: expressions of x, y, z, t with ; between them, one a "
+                    "dimension; empty: zero"),
+          parameter("velocity", &Options::velocity, "m/s", "of its own, where it is not that function"),
           parameter("expected_traction", &Options::expected_traction, "Pa", "what should be received"),
           parameter("along", &Options::along, "",
                     "the expected traction has one part a dimension, or one along the normal",
@@ -49,12 +50,11 @@ public:
 
   void define(const TimeStep& initial) override;
   void attach() override;
-  void start(const TimeStep& initial) override { write(initial.end, true); }
   void step(const TimeStep& step) override { write(step.end, true); }
 
 private:
   void look_up();
-  /// All fields, for time t; before start() nothing is received.
+  /// All fields, for time t; in define nothing is received yet.
   void write(double t, bool is_received) const;
   void write_received(double t, bool is_received) const;
 

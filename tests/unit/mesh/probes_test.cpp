@@ -101,15 +101,20 @@ TEST_CASE("the power of a traction on a motion is the integral of their product"
   CHECK(surface::work_of(loads_of(s, x), on_nodes(s, x)) == doctest::Approx(8.0 / 3.0).epsilon(round_off));
 }
 
-TEST_CASE("the error of a nodal field is its mean over the surface and its largest")
+TEST_CASE("the size of a nodal field is its mean over the surface and its largest, and errors are relative to it")
 {
-  const auto s = sampled_text("line:2");                          // weights 1/4, 1/2, 1/4
-  const Field off = (Field(2, 3) << 3, 0, 0, 4, 0, 1).finished(); // |e| = 5, 0, 1
+  const auto s = sampled_text("line:2");                        // weights 1/4, 1/2, 1/4
+  const Field f = (Field(2, 3) << 3, 0, 0, 4, 0, 1).finished(); // |f| = 5, 0, 1
 
-  const auto error = nodal_error(s, off);
+  const auto norms = norms_of(s, f);
+  const auto relative = relative_error(s, 1.25 * f, f), absolute = relative_error(s, f, Field::Zero(2, 3));
 
-  CHECK(error.l2 == doctest::Approx(std::sqrt((25.0 + 1.0) / 4.0)).epsilon(round_off));
-  CHECK(error.max == 5.0);
+  CHECK(norms.l2 == doctest::Approx(std::sqrt((25.0 + 1.0) / 4.0)).epsilon(round_off));
+  CHECK(norms.max == 5.0);
+  CHECK(relative.l2 == doctest::Approx(0.25).epsilon(round_off));
+  CHECK(relative.max == doctest::Approx(0.25).epsilon(round_off));
+  CHECK(absolute.l2 == norms.l2);
+  CHECK(absolute.max == norms.max);
 }
 
 TEST_CASE("the loads of a constant traction, by the weights of their nodes, are that traction")
