@@ -7,6 +7,9 @@ find_package(Boost REQUIRED COMPONENTS program_options)
 find_package(HDF5 REQUIRED COMPONENTS C)
 find_package(tomlplusplus REQUIRED) # Debian: a compiled library
 find_package(nlohmann_json REQUIRED)
+find_package(pugixml REQUIRED)   # mesh files
+find_package(ZLIB REQUIRED)      # mesh files
+find_package(muparser REQUIRED)  # expressions in parameters of modules
 if(MULLION_TESTS)
   find_package(doctest REQUIRED)
 endif()

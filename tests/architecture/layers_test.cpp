@@ -41,6 +41,16 @@ bool is_beside(const std::string& file, const Include& include)
          fs::exists(source_root() / fs::path(file).parent_path() / include.name);
 }
 
+/// "surface/x.hpp" of a folder of kernels that several plug-ins share.
+bool is_shared_kernel(const Include& include)
+{
+  const auto folders = kernel_folders_of_tree();
+  return include.is_quoted && std::any_of(folders.begin(), folders.end(), [&](const auto& folder) {
+           return starts_with(folder, "modules/") && starts_with(include.name, last_part(folder) + "/") &&
+                  fs::exists(source_root() / fs::path(folder).parent_path() / include.name);
+         });
+}
+
 /// A plug-in's files but those of its Module or Driver class: kernels.
 std::vector<std::string> kernels_of(const std::string& folder)
 {
@@ -102,7 +112,7 @@ TEST_CASE("a module knows the SDK, its kernels and Eigen")
   for (const auto& folder : plugin_folders_of_tree())
     if (starts_with(folder, "modules/"))
       check_includes(sources_under(folder), [](const auto& file, const Include& i) {
-        return is_beside(file, i) || is_of(i, {"mullion/sdk", "Eigen"});
+        return is_beside(file, i) || is_shared_kernel(i) || is_of(i, {"mullion/sdk", "Eigen"});
       });
 }
 
@@ -123,8 +133,9 @@ TEST_CASE("a kernel knows other kernels and Eigen: neither windows nor case file
   for (const auto& folder : folders)
     if (const auto kernels = kernels_of(folder); !kernels.empty()) {
       is_any = true;
-      check_includes(kernels,
-                     [](const auto& file, const Include& i) { return is_beside(file, i) || is_of(i, {"Eigen"}); });
+      check_includes(kernels, [](const auto& file, const Include& i) {
+        return is_beside(file, i) || is_shared_kernel(i) || is_of(i, {"Eigen"});
+      });
     }
   CHECK(is_any);
 }

@@ -1,0 +1,11 @@
+Point(1) = {0, 0, 0, 1}; Point(2) = {1, 0, 0, 1}; Point(3) = {1, 1, 0, 1}; Point(4) = {0, 1, 0, 1};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};
+Transfinite Curve {1, 2, 3, 4} = 2; Transfinite Surface {1}; Recombine Surface {1};
+out[] = Extrude {0, 0, 0.5} { Surface{1}; Layers{2}; Recombine; };
+Physical Volume("body") = {out[1]};
+Physical Surface("wall") = {out[0], 1};
+Physical Surface("the lid") = {out[0]};
+Physical Surface(99) = {out[2]};
+Physical Curve("edge") = {1};
+Physical Point("corner") = {3};
