@@ -12,7 +12,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <sys/resource.h>
 
 namespace mullion::cli {
 namespace {
@@ -33,14 +32,6 @@ std::string quoted(const std::string& text)
     out += c;
   }
   return out + "\"";
-}
-
-/// Peak resident set of the largest process that ran [MB].
-double peak_memory()
-{
-  rusage usage{};
-  ::getrusage(RUSAGE_CHILDREN, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
 void print_row(const char* what, double value, const std::string& unit)
@@ -86,7 +77,7 @@ void print_table(const Results& results, const std::string& out)
     const auto what = call.call == "attach" ? std::string("build the operators") : "one transfer of " + call.call;
     print_row(what.c_str(), 1e3 * call.work_s / static_cast<double>(call.count), "ms");
   }
-  print_row("peak memory", peak_memory(), "MB");
+  print_row("peak memory", results.peak_megabytes, "MB");
   fmt::print("both fields for ParaView: {}/results.xdmf\n", out);
 }
 

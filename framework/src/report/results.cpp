@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <sys/resource.h>
 
 namespace mullion {
 
@@ -36,6 +37,9 @@ Results read_results(const std::string& folder)
   }
   for (const auto& timing : record->attempts.back().timings)
     results.calls.push_back({timing.who, timing.call, timing.count, timing.work_s});
+  rusage usage{};
+  ::getrusage(RUSAGE_CHILDREN, &usage);
+  results.peak_megabytes = static_cast<double>(usage.ru_maxrss) / 1024.0;
   return results;
 }
 

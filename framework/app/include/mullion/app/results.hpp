@@ -22,6 +22,7 @@ struct CallTime {
 struct Results {
   std::vector<Quantity> quantities;
   std::vector<CallTime> calls;
+  double peak_megabytes = 0.0; ///< peak resident set of the largest process that this one started and that has ended
 
   /// The value of a quantity; NaN if there is none.
   [[nodiscard]] double value(const std::string& name) const;
