@@ -293,9 +293,10 @@ void Recorder::collect_timings()
   double calls = 0.0;
   for (const auto& timing : attempt.timings)
     if (timing.call != attach_call) calls += timing.wall_s;
-  // What is left: the driver's own arithmetic, commits, audits.
-  attempt.timings.push_back(
-      {"mullion", "driver and commit", control_.step, attempt.wall_s - calls, attempt.wall_s - calls, 0.0});
+  // What is left: the driver's own arithmetic, commits, audits. (In a run of very few steps the calls of the start-up,
+  // which are counted too, may be longer than all steps.)
+  const double rest = std::max(0.0, attempt.wall_s - calls);
+  attempt.timings.push_back({"mullion", "driver and commit", control_.step, rest, rest, 0.0});
 }
 
 void Recorder::finish(const std::string& outcome, const std::string& error) noexcept

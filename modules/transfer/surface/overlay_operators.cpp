@@ -11,6 +11,7 @@ OverlayAssembly::OverlayAssembly(const SurfaceMesh& source, const SurfaceMesh& t
     : source_(source), target_(target), location_(source_location), metric_(metric), mass_(mass),
       has_source_mass_(source_mass == SourceMass::factorised)
 {
+  is_covered_.assign(static_cast<std::size_t>(source.n_faces()), false);
   if (mass == MassMetric::same) target_mass_.assign(static_cast<std::size_t>(target.n_faces()), {});
 }
 
@@ -23,11 +24,33 @@ void OverlayAssembly::add(const Subelement& piece)
 void OverlayAssembly::integrate_face()
 {
   const auto face = pieces_.front().source_face;
+  points_.clear();
+  const double coverage = add_points_of_face(source_, target_, pieces_, metric_, points_);
+  is_covered_[static_cast<std::size_t>(face)] = coverage > 0.0;
+  pieces_.clear();
+  sum_points(face);
+}
+
+void OverlayAssembly::attach_uncovered(const FaceTree& target_tree)
+{
+  constexpr int points_a_direction = 2;
+  if (target_.n_faces() == 0) return;
+  PointSet set;
+  set.coverage.assign(static_cast<std::size_t>(source_.n_faces()), 0.0);
+  for (std::int32_t face = 0; face < source_.n_faces(); ++face) {
+    if (is_covered_[static_cast<std::size_t>(face)] || !(face_measure(source_, face) > 0.0)) continue;
+    set.points.clear();
+    add_closest_points(source_, target_tree, std::span(&face, 1), points_a_direction, set);
+    points_ = set.points;
+    sum_points(face);
+  }
+}
+
+void OverlayAssembly::sum_points(std::int32_t face)
+{
   const auto source_nodes = source_.face(face);
   const std::size_t n = source_nodes.size();
-  points_.clear(), target_nodes_.clear(), local_.clear();
-  add_points_of_face(source_, target_, pieces_, metric_, points_);
-  pieces_.clear();
+  target_nodes_.clear(), local_.clear();
 
   // Few target nodes lie near a source face: a list is searched faster than anything cleverer.
   const auto column_of = [&](std::int32_t node) {
@@ -68,6 +91,7 @@ void OverlayAssembly::integrate_face()
 TransferOperators OverlayAssembly::finish(const FaceTree& target_tree)
 {
   if (!pieces_.empty()) integrate_face();
+  attach_uncovered(target_tree);
   const auto taken = [](std::vector<Entry>& entries, std::int64_t n_rows, std::int64_t n_columns) {
     auto matrix = assembled(n_rows, n_columns, entries);
     std::vector<Entry>().swap(entries); // there may be a hundred million

@@ -12,7 +12,11 @@ namespace mullion::surface {
 
 /// Takes the pieces of an overlay in their order (ascending source faces); finish() makes the operators.
 ///
-/// Up to round-off those of operators_of_points() with points_of_overlay(), but for the facial mean, which is left out.
+/// A source face without any piece hands its load to the closest points of the target, so that the force is kept; the
+/// overlay's report tells of it.
+///
+/// Up to round-off the operators are those of operators_of_points() with points_of_overlay() and add_closest_points(),
+/// but for the facial mean, which is left out.
 class OverlayAssembly {
 public:
   OverlayAssembly(const SurfaceMesh& source, const SurfaceMesh& target, Location source_location, Metric metric,
@@ -22,7 +26,9 @@ public:
   [[nodiscard]] TransferOperators finish(const FaceTree& target_tree);
 
 private:
-  void integrate_face(); ///< all pieces of one source face
+  void integrate_face();              ///< all pieces of one source face
+  void sum_points(std::int32_t face); ///< points_ of one source face, into the entries
+  void attach_uncovered(const FaceTree& target_tree);
 
   const SurfaceMesh& source_;
   const SurfaceMesh& target_;
@@ -35,6 +41,7 @@ private:
   std::vector<std::int32_t> target_nodes_; ///< that they touch
   std::vector<double> local_;              ///< their loads by source node and by target node
   std::vector<Entry> nodal_, facial_, source_mass_;
+  std::vector<bool> is_covered_;                    ///< the source faces
   std::vector<std::array<double, 16>> target_mass_; ///< of each target face, its nodes by its nodes
 };
 

@@ -62,3 +62,19 @@ TEST_CASE("operators summed up piece by piece are those of all integration point
   check_same(grid_on(wing, {12, 12, Faces::triangles, 0.24, 1, 1}),
              turned_over(grid_on(wing, {10, 10, Faces::quadrilaterals, 0.24, 2, 1})));
 }
+
+TEST_CASE("a source that reaches beyond the target keeps its force: uncovered faces go to the closest points")
+{
+  const SurfaceMap wide = [](double u, double v) { return Point(2.0 * u, v, 0.0); };
+  const SurfaceMap narrow = [](double u, double v) { return Point(u, v, 0.0); };
+  const auto source = grid_on(wide, {20, 10, Faces::triangles, 0.2, 1, 1});
+  const auto target = turned_over(grid_on(narrow, {7, 7, Faces::triangles, 0.2, 2, 1}));
+  OverlayAssembly assembly(source, target, Location::nodes, Metric::source, MassMetric::same);
+
+  const auto report = overlay_surfaces(source, target, {}, [&](const Subelement& piece) { assembly.add(piece); });
+  const auto operators = assembly.finish(FaceTree(target));
+
+  CHECK(report.uncovered_faces.count > 100); // about half of 400
+  const Field loads = loads_from_traction(operators, Field::Ones(3, source.n_nodes()));
+  for (int c = 0; c < 3; ++c) CHECK(loads.row(c).sum() == doctest::Approx(2.0).epsilon(1e-13)); // the whole area
+}
