@@ -26,6 +26,7 @@ CaseRun case_run(const PistonRun& run)
   CaseRun result;
   result.file = MULLION_SOURCE_DIR "/configs/closed_piston.toml";
   result.flags = {"--inline"};
+  result.timeout = std::chrono::minutes(10); // the longest take seconds, if nobody else wants the cores
   const auto set = [&](const std::string& key, const auto& value) {
     result.sets.push_back(fmt::format("{}={}", key, value));
   };

@@ -1,5 +1,7 @@
 #include "mass_matrix.hpp"
 
+#include <Eigen/IterativeLinearSolvers>
+
 #include <algorithm>
 #include <utility>
 
@@ -35,20 +37,34 @@ MassMatrix mass_matrix(Operator matrix)
         if (!is_pinned[static_cast<std::size_t>(it.col())])
           entries.push_back({row, static_cast<std::int32_t>(it.col()), it.value()});
   }
-  const Eigen::SparseMatrix<double> pinned = assembled(n, n, entries);
-  mass.factors = std::make_unique<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>(pinned);
-  mass.is_solvable = mass.factors->info() == Eigen::Success && (mass.factors->vectorD().array() > 0.0).all();
+  auto pinned = assembled(n, n, entries);
+  if (n <= largest_factorised) {
+    mass.factors = std::make_unique<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>(pinned);
+    mass.is_solvable = mass.factors->info() == Eigen::Success && (mass.factors->vectorD().array() > 0.0).all();
+  } else {
+    mass.pinned_matrix = std::move(pinned);
+    mass.is_solvable = largest > 0.0;
+  }
   mass.matrix = std::move(matrix);
   return mass;
 }
 
 Field solve(const MassMatrix& mass, const FieldView& loads)
 {
+  constexpr double round_off = 1e-15;
+  constexpr int most_iterations = 500; // fifty are usual; slivers need more
+  Eigen::ConjugateGradient<Operator, Eigen::Lower | Eigen::Upper> iterative;
+  if (mass.factors == nullptr) {
+    iterative.setTolerance(round_off);
+    iterative.setMaxIterations(most_iterations);
+    iterative.compute(mass.pinned_matrix);
+  }
   Field out(loads.rows(), loads.cols());
   for (Eigen::Index c = 0; c < loads.rows(); ++c) {
     Eigen::VectorXd rhs = loads.row(c).transpose();
     for (const auto node : mass.pinned) rhs[node] = 0.0;
-    out.row(c) = mass.factors->solve(rhs).transpose();
+    if (mass.factors != nullptr) out.row(c) = mass.factors->solve(rhs).transpose();
+    else out.row(c) = iterative.solve(rhs).transpose();
   }
   return out;
 }
