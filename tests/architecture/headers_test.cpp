@@ -76,6 +76,8 @@ TEST_SUITE("full")
   {
     check_headers("framework/src", compiler_and_flags("framework/src/run/session.cpp"));
     auto command = compiler_and_flags("framework/cli/main.cpp");
+    for (const auto& folder : kernel_folders_of_tree()) // which others include as "folder/….hpp"
+      command.push_back("-I" + (source_root() / folder).parent_path().string());
     check_headers("modules", command);
     check_headers("drivers", command);
     check_headers("examples", command);

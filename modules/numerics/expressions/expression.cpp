@@ -2,7 +2,6 @@
 
 #include <muParser.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -51,9 +50,8 @@ Expression::Expression(const std::string& text) : parser_(std::make_unique<Parse
     p.parser.SetExpr(text);
     p.parser.Eval();
   } catch (const mu::Parser::exception_type& error) {
-    throw ExpressionError(join("expression \"", text, "\": ", error.GetMsg(), " (at character ",
-                               std::min(static_cast<std::size_t>(error.GetPos()) + 1, text.size()),
-                               "); numbers, functions, and the variables x, y, z and t"));
+    throw ExpressionError(
+        join("expression \"", text, "\": ", error.GetMsg(), "; numbers, functions, and the variables x, y, z and t"));
   }
   if (p.parser.GetNumResults() != 1) throw ExpressionError(join("expression \"", text, "\": several values; one"));
 }

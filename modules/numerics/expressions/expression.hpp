@@ -12,7 +12,7 @@
 
 namespace mullion::expressions {
 
-/// The text, the place in it, what is wrong there.
+/// The text, what is wrong in it, what would be right.
 class ExpressionError : public std::runtime_error {
 public:
   using std::runtime_error::runtime_error;

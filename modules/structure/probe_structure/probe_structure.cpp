@@ -8,16 +8,19 @@ namespace mullion::probe_structure {
 namespace {
 
 /// The surface that the options name.
-Pane read_pane(const std::string& mesh, const std::string& group)
+Pane read_pane(const std::string& text, const std::string& group)
 {
+  std::string place; // what the error does not say itself
   try {
-    const auto surface = mesh_files::interface_of(mesh_files::read_or_generate(mesh), group);
+    const auto mesh = mesh_files::read_or_generate(text);
+    place = fmt::format("mesh = \"{}\": ", text);
+    const auto surface = mesh_files::interface_of(mesh, group);
     Pane pane{0, surface.nodes, {}};
     for (const auto& [shape, connectivity] : surface.blocks)
       pane.blocks.push_back({static_cast<ElementType>(shape), connectivity}); // the numbers are the same
     return pane;
   } catch (const mesh_files::FileError& error) {
-    throw Error(Errc::config, fmt::format("mesh = \"{}\": {}", mesh, error.what()));
+    throw Error(Errc::config, place + error.what());
   }
 }
 

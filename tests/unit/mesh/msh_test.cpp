@@ -62,6 +62,22 @@ TEST_CASE("a mesh of Gmsh is the same in every version and encoding")
   CHECK(is_same(parse_sample("cube_msh2_b.msh"), older));
 }
 
+TEST_CASE("a binary MSH file of a machine with the other order of bytes is read")
+{
+  // The bytes of the numbers 1 to 4 and of nodes at 0 and 1 are easy to turn round by hand.
+  const auto number = [](int value) { return std::string("\0\0\0", 3) + static_cast<char>(value); };
+  const std::string zero(8, '\0'), one = "\x3f\xf0" + std::string(6, '\0'); // 1.0, sign and exponent first
+  const auto text = "$MeshFormat\n2.2 1 8\n" + number(1) + "\n$EndMeshFormat\n$Nodes\n2\n" + number(1) + zero + zero +
+                    zero + number(2) + one + zero + zero + "\n$EndNodes\n$Elements\n1\n" + number(1) + number(1) +
+                    number(1) + number(1) + number(4) + number(2) + number(1) + "\n$EndElements\n";
+
+  const auto mesh = parse_msh("swapped", text);
+
+  CHECK(mesh.nodes == Eigen::RowVector2d(0.0, 1.0));
+  CHECK(elements_of(mesh, Shape::line2) == Connectivity(Eigen::Vector2i(1, 0)));
+  CHECK(find_group(mesh, "4").dimension == 1);
+}
+
 TEST_CASE("every shape has its nodes in their order, and nodes without an element are left out")
 {
   const auto mesh = parse_sample("shapes_msh2_a.msh");

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -44,18 +46,22 @@ const std::string legacy = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UN
 const std::string poly = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET POLYDATA\n"
                          "POINTS 4 float\n0 0 0  1 0 0  0 1 0  1 1 0\n";
 
-/// The bytes of numbers in the order of this machine.
-template <class T> std::string bytes_of(const std::vector<T>& values)
+/// The bytes of numbers in the order of this machine, or the other one.
+template <class T> std::string bytes_of(const std::vector<T>& values, bool is_swapped = false)
 {
   std::string bytes(values.size() * sizeof(T), '\0');
   std::memcpy(bytes.data(), values.data(), bytes.size());
+  for (std::size_t at = 0; is_swapped && at < bytes.size(); at += sizeof(T))
+    std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                 bytes.begin() + static_cast<std::ptrdiff_t>(at + sizeof(T)));
   return bytes;
 }
 
 /// Binary data of a VTU file: their size, and they.
-template <class T> std::string sized(const std::vector<T>& values)
+template <class T> std::string sized(const std::vector<T>& values, bool is_swapped = false)
 {
-  return bytes_of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(values.size() * sizeof(T))}) + bytes_of(values);
+  const std::vector<std::uint32_t> size = {static_cast<std::uint32_t>(values.size() * sizeof(T))};
+  return bytes_of(size, is_swapped) + bytes_of(values, is_swapped);
 }
 
 std::string base64(const std::string& bytes)
@@ -72,19 +78,23 @@ std::string base64(const std::string& bytes)
 }
 
 /// A triangle of which all arrays are appended.
-std::string appended_vtu(const std::string& encoding)
+std::string appended_vtu(const std::string& encoding, bool is_big_endian = false)
 {
   const bool is_raw = encoding == "raw";
-  const std::vector<std::string> data = {sized(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0.5}),
-                                         sized(std::vector<std::int32_t>{2, 0, 1}), sized(std::vector<std::int64_t>{3}),
-                                         sized(std::vector<std::uint8_t>{5})};
+  const bool is_swapped = is_big_endian == (std::endian::native == std::endian::little);
+  const std::vector<std::string> data = {sized(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0.5}, is_swapped),
+                                         sized(std::vector<std::int32_t>{2, 0, 1}, is_swapped),
+                                         sized(std::vector<std::int64_t>{3}, is_swapped),
+                                         sized(std::vector<std::uint8_t>{5}, is_swapped)};
   std::vector<std::string> offsets;
   std::string all;
   for (const auto& array : data) {
     offsets.push_back(std::to_string(all.size()));
     all += is_raw ? array : base64(array);
   }
-  return "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid>"
+  return std::string("<VTKFile type=\"UnstructuredGrid\" byte_order=\"") +
+         (is_big_endian ? "BigEndian" : "LittleEndian") +
+         "\"><UnstructuredGrid>"
          "<Piece NumberOfPoints=\"3\" NumberOfCells=\"1\"><Points><DataArray type=\"Float64\" "
          "NumberOfComponents=\"3\" format=\"appended\" offset=\"" +
          offsets[0] +
@@ -128,15 +138,30 @@ TEST_CASE("VTU files of meshio are the same as text, base64 and compressed, with
   }
 }
 
-TEST_CASE("appended data of a VTU file are read raw and as base64")
+TEST_CASE("appended data of a VTU file are read raw and as base64, whichever byte comes first")
 {
-  for (const std::string encoding : {"raw", "base64"}) {
-    CAPTURE(encoding);
-    const auto mesh = parse_vtu("appended", appended_vtu(encoding));
+  for (const std::string encoding : {"raw", "base64"})
+    for (const bool is_big_endian : {false, true}) {
+      CAPTURE(encoding);
+      CAPTURE(is_big_endian);
+      const auto mesh = parse_vtu("appended", appended_vtu(encoding, is_big_endian));
 
-    CHECK(mesh.nodes.col(2) == Eigen::Vector3d(0.0, 1.0, 0.5));
-    CHECK(elements_of(mesh, Shape::triangle3) == Connectivity(Eigen::Vector3i(2, 0, 1)));
-  }
+      CHECK(mesh.nodes.col(2) == Eigen::Vector3d(0.0, 1.0, 0.5));
+      CHECK(elements_of(mesh, Shape::triangle3) == Connectivity(Eigen::Vector3i(2, 0, 1)));
+    }
+}
+
+TEST_CASE("the pieces of a VTU file are one mesh")
+{
+  auto text = vtu_text(box_2d({1, 1, Cells::quads, {}}, {1, 1}));
+  const auto begin = text.find("<Piece"), end = text.find("</UnstructuredGrid>");
+  text.insert(end, text.substr(begin, end - begin));
+
+  const auto mesh = parse_vtu("m", text);
+
+  CHECK(mesh.nodes.cols() == 8);
+  CHECK(elements_of(mesh, Shape::quadrilateral4).col(1) == Eigen::Vector4i(4, 5, 7, 6));
+  CHECK(find_group(mesh, "x_min").elements.size() == 2);
 }
 
 TEST_CASE("a header of a base64 array may be a text of its own")

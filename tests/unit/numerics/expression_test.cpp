@@ -54,9 +54,9 @@ TEST_CASE("a vector has one part a dimension, or one along the normal")
   CHECK(complaint("x; y", Along::normal, 2) == "expression \"x; y\": 2 parts; 1, the part along the normal");
 }
 
-TEST_CASE("errors in an expression show it, and the place in it")
+TEST_CASE("errors in an expression show it, and what is wrong in it")
 {
-  CHECK(complaint("2*(x") == "expression \"2*(x\": Missing parenthesis (at character 4); numbers, functions, and the "
+  CHECK(complaint("2*(x") == "expression \"2*(x\": Missing parenthesis; numbers, functions, and the "
                              "variables x, y, z and t");
   CHECK(complaint("x + velocity").find("Unexpected token \"velocity\"") != std::string::npos);
   CHECK(complaint("x = 3") == "expression \"x = 3\": an assignment; compare with ==");
