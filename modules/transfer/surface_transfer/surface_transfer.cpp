@@ -199,7 +199,7 @@ surface::Resultant SurfaceTransfer::fluid_resultant() const
   return surface::resultant_of_traction(fluid_mesh_, fluid_traction(), pairing_.operators.source_location);
 }
 
-void SurfaceTransfer::loads(const TimeStep&)
+void SurfaceTransfer::loads(const TimeStep& step)
 {
   const surface::Field loads = loads_on_structure();
   load_.now() = loads;
@@ -212,7 +212,8 @@ void SurfaceTransfer::loads(const TimeStep&)
   moment_.now().col(0) = received.moment, fluid_moment_.now().col(0) = given.moment;
 
   const auto& motion = received_velocity_.is_connected() ? received_velocity_ : received_displacement_;
-  if (motion.is_connected()) {
+  const bool is_first_exchange = step.index == 0; // loads go first there, no motion was sent yet
+  if (motion.is_connected() && !is_first_exchange) {
     power_.now()(0, 0) = surface::work_of(loads, view(motion.newest()));
     fluid_power_.now()(0, 0) = surface::work_of(forces_on_fluid(), motion_of_fluid(motion.newest()));
   } else {
