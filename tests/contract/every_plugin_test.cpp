@@ -49,6 +49,30 @@ PluginCase in_a_mode(PluginCase c)
   return c;
 }
 
+/// The transfers there and back of `mullion transfer-test`, in 40 steps that differ: two meshes of a twisted wing, or,
+/// where a mesh is among the options, others.
+PluginCase probed(const std::string& method, std::vector<std::string> options)
+{
+  std::vector<std::string> sets = {"run.dt=0.025",
+                                   "output.every=10",
+                                   "transfer.module=" + method,
+                                   "fluid.mesh=wing:4x6,triangles,tip=0.5,twist=-4,camber=0.05",
+                                   "structure.mesh=wing:3x5,quads,tip=0.5,twist=-4,camber=0.05",
+                                   "fluid.function=100*sin(3*x + t); 10*t; 1e4*(1 + 0.2*cos(2*y + 4*t))",
+                                   "structure.function=0.01*t; 0; 0.1*y*cos(5*t)"};
+  for (auto& option : options) sets.push_back(std::move(option)); // of one key twice the last counts
+  return {"configs/transfer_test.toml", sets};
+}
+/// Between two arcs in the plane.
+PluginCase in_the_plane(PluginCase c)
+{
+  for (const char* set :
+       {"fluid.mesh=arc:13", "structure.mesh=arc:9", "fluid.function=100*sin(3*x + t); 1e3*y*t",
+        "fluid.expected_motion=0; 0", "structure.expected_traction=0; 0", "structure.function=0.01*t; 0.1*x*cos(5*t)"})
+    c.sets.emplace_back(set);
+  return c;
+}
+
 const std::string gas = "fluid_density=1.3", sound = "sound_speed=328.165"; // what cibc must be told
 const std::vector<PluginCase> cases = {
     {piston, {piston_steps, "output.every=10", "fluid.cells=20"}},
@@ -82,6 +106,17 @@ const std::vector<PluginCase> cases = {
            {"iteration=parallel", "acceleration=iqn_mvj", "structure.substeps=2", "load_interpolation=constant"}),
     {"tests/verification/added_mass.toml",
      {"run.end_time=4.0e-3", "output.every=10", "driver.reuse=3", "structure.density=75.0"}}, // without a mesh to move
+    probed("common_refinement", {"transfer.motion=adjoint"}),
+    probed("common_refinement", {"driver.fluid_exports=traction", "fluid.on=faces", "driver.structure_receives=load",
+                                 "transfer.metric=average", "transfer.mass=native"}),
+    in_the_plane(probed("common_refinement", {"driver.fluid_exports=load", "fluid.on=load", "driver.recover=true",
+                                              "transfer.recovery=lumped"})),
+    probed("quadrature_projection", {"driver.fluid_exports=load", "fluid.on=load", "driver.structure_receives=load",
+                                     "transfer.adaptive=true", "transfer.tolerance=1e-3"}),
+    in_the_plane(probed("quadrature_projection", {"transfer.points=3", "transfer.motion=adjoint"})),
+    probed("node_projection", {"driver.motion=displacement"}),
+    in_the_plane(probed("nearest_projection", {"driver.fluid_exports=traction", "fluid.on=faces"})),
+    probed("nearest_neighbor", {"driver.fluid_exports=load", "fluid.on=load", "driver.structure_receives=load"}),
 };
 
 test::CaseRun to_run(const PluginCase& c, const std::vector<std::string>& flags, const std::string& out)
