@@ -10,8 +10,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace mullion::cli {
 namespace {
@@ -39,18 +42,26 @@ void print_row(const char* what, double value, const std::string& unit)
   if (!std::isnan(value)) fmt::print("  {:<44} {:>14.6g} {}\n", what, value, unit);
 }
 
-/// Both sides of a quantity that a transfer should keep, and by how much it is off.
-void print_pair(const Results& results, const char* what, const std::string& fluid, const std::string& structure)
+/// Both sides of a quantity that a transfer should keep, and by how much it is off, as a part of its largest component.
+void print_pair(const Results& results, const std::string& what, const std::string& fluid, const std::string& structure)
 {
+  struct Pair {
+    std::string name;
+    double here, there;
+  };
+  std::vector<Pair> pairs;
+  double largest = 0.0;
   for (const auto& quantity : results.quantities) {
     if (quantity.name.rfind(fluid, 0) != 0) continue;
     const auto suffix = quantity.name.substr(fluid.size()); // "", "_x", …
-    if (!suffix.empty() && suffix[0] != '_') continue;
-    const double there = results.value(structure + suffix), scale = std::max(std::abs(quantity.value), std::abs(there));
-    if (std::isnan(there)) continue;
-    fmt::print("  {:<16} {:>16.9g} {:>16.9g} {:>12.2e}\n", what + suffix, quantity.value, there,
-               scale > 0.0 ? std::abs(there - quantity.value) / scale : 0.0);
+    const double there = results.value(structure + suffix);
+    if ((!suffix.empty() && suffix[0] != '_') || std::isnan(there)) continue;
+    pairs.push_back({what + suffix, quantity.value, there});
+    largest = std::max({largest, std::abs(quantity.value), std::abs(there)});
   }
+  for (const auto& [name, here, there] : pairs)
+    fmt::print("  {:<16} {:>16.9g} {:>16.9g} {:>12.2e}\n", name, here, there,
+               largest > 0.0 ? std::abs(there - here) / largest : 0.0);
 }
 
 void print_table(const Results& results, const std::string& out)

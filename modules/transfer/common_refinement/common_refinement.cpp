@@ -7,6 +7,7 @@
 #include "surface/polyline_overlay.hpp"
 #include "surface/surface_overlay.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 #include <mullion/sdk/plugin.hpp>
@@ -55,7 +56,10 @@ private:
       overlay.feature_angle = options_.feature_angle * std::numbers::pi / 180.0;
       pairing.report = surface::overlay_polylines(fluid, structure, overlay, take);
     } else {
-      pairing.report = surface::overlay_surfaces(fluid, structure, {}, take);
+      surface::SurfaceOverlayOptions overlay;
+      overlay.gap_tolerance =
+          options_.gap_tolerance * std::max(surface::mean_face_size(fluid), surface::mean_face_size(structure));
+      pairing.report = surface::overlay_surfaces(fluid, structure, overlay, take);
     }
     pairing.operators = assembly.finish(surface::FaceTree(structure, 0.0));
     return pairing;

@@ -119,6 +119,9 @@ Verdict judge(const SurfaceMesh& source, const SurfaceMesh& target, const Overla
   else if (overhang > 0.0)
     warn("the source reaches ", report.largest_overhang, " m beyond the target's end; the force there goes to the end",
          " node, whose traction is wrong");
+  if (report.covered_fraction < tolerances.least_covered)
+    fail("only ", 100.0 * report.covered_fraction, " % of the source has a counterpart, less than ",
+         100.0 * tolerances.least_covered, " %. Are both in the same unit, and do they face each other?");
   if (report.uncovered_faces.count > 0)
     warn(named(report.uncovered_faces, "source face", "source faces", source_face), " without a counterpart; ",
          100.0 * (1.0 - report.covered_fraction), " % of the source is not covered, and its force goes to the closest",
@@ -129,8 +132,10 @@ Verdict judge(const SurfaceMesh& source, const SurfaceMesh& target, const Overla
              ? std::string("all in full")
              : named(report.partly_covered_faces, "source face", "source faces", source_face) + " in part");
   if (report.unmatched_target_nodes.count > 0)
-    warn(named(report.unmatched_target_nodes, "target node", "target nodes", target_node), " without a counterpart; ",
-         100.0 * (1.0 - report.target_covered_fraction), " % of the target receives nothing");
+    warn(named(report.unmatched_target_nodes, "target node", "target nodes", target_node), " without a counterpart",
+         report.target_covered_fraction < 1.0
+             ? words("; ", 100.0 * (1.0 - report.target_covered_fraction), " % of the target receives nothing")
+             : std::string());
   if (report.unmatched_source_nodes.count > 0)
     warn(named(report.unmatched_source_nodes, "source node", "source nodes", source_node),
          " not facing the target; places on it are interpolated");

@@ -52,6 +52,7 @@ struct Defects {
 struct Tolerances {
   double gap_warning = 0.5, gap_error = 2.0;
   double overhang_error = 0.5;  ///< a source that reaches further beyond the target; less is a warning
+  double least_covered = 0.5;   ///< fraction of the source's measure that has a counterpart; less is an error
   double coverage_slack = 0.1;  ///< of a source face, either way: a warning
   double measure_warning = 0.1; ///< relative difference of the two lengths or areas
   double force_error = 1e-10;   ///< relative; for loads on the source's metric

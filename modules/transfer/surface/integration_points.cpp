@@ -3,6 +3,8 @@
 #include "quadrature_rules.hpp"
 #include "shape_functions.hpp"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -140,6 +142,50 @@ PointSet projected(const SurfaceMesh& source, const SurfaceMesh& target, const F
 
 } // namespace
 
+Eigen::Vector4d shape_integrals(const SurfaceMesh& mesh, std::int32_t face)
+{
+  const auto n = mesh.face(face).size();
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  for (const auto& p : face_rule(n, 2)) {
+    const auto values = shape_values(n, p.xi);
+    for (std::size_t k = 0; k < n; ++k)
+      sum[static_cast<Eigen::Index>(k)] += p.weight * measure_density(mesh, face, p.xi) * values[k];
+  }
+  return sum;
+}
+
+namespace {
+
+/// Weigh the points of a face that its pieces cover in part so that each shape function keeps its integral, and with it
+/// any nodal traction its force: by a linear function over the face. @return false: it would not be positive, or there
+/// is nothing to do
+bool keep_first_moments(const SurfaceMesh& source, std::int32_t face, std::span<IntegrationPoint> points)
+{
+  const auto n = static_cast<Eigen::Index>(source.face(face).size());
+  const auto values_at = [&](const IntegrationPoint& p) {
+    const auto values = shape_values(static_cast<std::size_t>(n), p.source_xi);
+    Eigen::Vector4d v = Eigen::Vector4d::Zero();
+    for (Eigen::Index k = 0; k < n; ++k) v[k] = values[static_cast<std::size_t>(k)];
+    return v;
+  };
+  Eigen::Matrix4d mass = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d covered = Eigen::Vector4d::Zero();
+  for (const auto& p : points) {
+    const auto v = values_at(p);
+    mass += p.weight * v * v.transpose();
+    covered += p.weight * v;
+  }
+  const Eigen::Vector4d own = shape_integrals(source, face);
+  if ((covered - own).cwiseAbs().maxCoeff() <= 1e-13 * own.maxCoeff()) return false; // wholly covered
+  const Eigen::VectorXd slope = mass.topLeftCorner(n, n).ldlt().solve(own.head(n));
+  const auto factor = [&](const IntegrationPoint& p) { return slope.dot(values_at(p).head(n)); };
+  if (!std::all_of(points.begin(), points.end(), [&](const auto& p) { return factor(p) > 0.0; })) return false;
+  for (auto& p : points) p.weight *= factor(p);
+  return true;
+}
+
+} // namespace
+
 double add_points_of_face(const SurfaceMesh& source, const SurfaceMesh& target, std::span<const Subelement> pieces,
                           Metric metric, std::vector<IntegrationPoint>& points)
 {
@@ -158,8 +204,10 @@ double add_points_of_face(const SurfaceMesh& source, const SurfaceMesh& target, 
     points.resize(first_point);
     return 0.0;
   }
-  if (metric != Metric::target)
-    for (std::size_t i = first_point; i < points.size(); ++i) points[i].weight *= own / measure;
+  if (metric == Metric::target) return coverage;
+  const auto own_points = std::span(points).subspan(first_point);
+  if (metric == Metric::source && keep_first_moments(source, face, own_points)) return coverage;
+  for (auto& point : own_points) point.weight *= own / measure;
   return coverage;
 }
 

@@ -33,14 +33,19 @@ struct PointSet {
 /// triangles with three points each, exact for those, or six points where a quadrilateral takes part.
 ///
 /// Metrics source and average: the points of each source face are scaled by its own measure / that of its pieces, so
-/// that constants keep their integral over the source, whatever the projection did to the pieces. A source face whose
+/// that constants keep their integral over the source, whatever the projection did to the pieces. On the source's
+/// metric a face that is covered in part is scaled by a linear function, if that is positive, so that each of its shape
+/// functions keeps its integral too, and a nodal traction its force. A source face whose
 /// pieces have no measure (coverage below 1e-12) gets no point; add_closest_points() is for these.
 ///
 /// @param pieces  grouped by source face
 [[nodiscard]] PointSet points_of_overlay(const SurfaceMesh& source, const SurfaceMesh& target,
                                          std::span<const Subelement> pieces, Metric metric);
 
-/// The same for the pieces of one source face: appends its points.
+/// Integrals of a face's shape functions over the face [m or m^2]; zeros beyond its nodes.
+[[nodiscard]] Eigen::Vector4d shape_integrals(const SurfaceMesh& mesh, std::int32_t face);
+
+/// The same as points_of_overlay() for the pieces of one source face: appends its points.
 ///
 /// @return  its coverage; 0: no point was appended
 double add_points_of_face(const SurfaceMesh& source, const SurfaceMesh& target, std::span<const Subelement> pieces,

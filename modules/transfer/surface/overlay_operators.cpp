@@ -75,6 +75,15 @@ void OverlayAssembly::sum_points(std::int32_t face)
     for (std::size_t a = 0; a < nodes.size(); ++a)
       for (std::size_t b = 0; b < nodes.size(); ++b) sum[4 * a + b] += point.weight * nt[a] * nt[b];
   }
+  // A face that is covered by so little that no weights keep the first moments still keeps its force.
+  const auto own = shape_integrals(source_, face);
+  if (metric_ == Metric::source)
+    for (std::size_t a = 0; a < n; ++a) {
+      double covered = 0.0;
+      for (std::size_t column = 0; column < target_nodes_.size(); ++column) covered += local_[4 * column + a];
+      const double factor = covered > 0.0 ? own[static_cast<Eigen::Index>(a)] / covered : 1.0;
+      for (std::size_t column = 0; column < target_nodes_.size(); ++column) local_[4 * column + a] *= factor;
+    }
   for (std::size_t column = 0; column < target_nodes_.size(); ++column) {
     double whole = 0.0; // the source's shape functions sum to one
     for (std::size_t a = 0; a < n; ++a) {

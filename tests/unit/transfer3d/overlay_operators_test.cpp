@@ -59,8 +59,30 @@ void check_same(const SurfaceMesh& source, const SurfaceMesh& target)
 TEST_CASE("operators summed up piece by piece are those of all integration points")
 {
   check_same(along(arc, 170), reversed(along(arc, 130)));
-  check_same(grid_on(wing, {12, 12, Faces::triangles, 0.24, 1, 1}),
-             turned_over(grid_on(wing, {10, 10, Faces::quadrilaterals, 0.24, 2, 1})));
+  const SurfaceMap plane = [](double u, double v) { return Point(u, v, 0.0); };
+  check_same(grid_on(plane, {12, 12, Faces::triangles, 0.24, 1, 1}),
+             turned_over(grid_on(plane, {10, 10, Faces::quadrilaterals, 0.24, 2, 1})));
+}
+
+TEST_CASE("any nodal traction keeps its force, also where rims do not coincide")
+{
+  for (const auto faces : {Faces::triangles, Faces::mixed}) {
+    const auto source = grid_on(wing, {9, 9, faces, 0.24, 1, 1});
+    const auto target = turned_over(grid_on(wing, {7, 7, Faces::quadrilaterals, 0.24, 2, 1}));
+    for (const auto location : {Location::nodes, Location::faces}) {
+      OverlayAssembly assembly(source, target, location, Metric::source, MassMetric::same);
+      const auto report = overlay_surfaces(source, target, {}, [&](const Subelement& piece) { assembly.add(piece); });
+      const auto operators = assembly.finish(FaceTree(target));
+      const Field traction = Field::Random(3, location == Location::nodes ? source.n_nodes() : source.n_faces());
+
+      const Field loads = loads_from_traction(operators, traction);
+
+      CHECK(report.min_coverage < 1.0 - 1e-6); // or this tests nothing
+      const Field expected =
+          location == Location::nodes ? apply(native_mass(source), traction) : apply(face_split(source), traction);
+      CHECK((loads.rowwise().sum() - expected.rowwise().sum()).cwiseAbs().maxCoeff() < 1e-14); // of an area of about 1
+    }
+  }
 }
 
 TEST_CASE("a source that reaches beyond the target keeps its force: uncovered faces go to the closest points")
