@@ -306,8 +306,8 @@ TEST_CASE("what transfer-test cannot use is refused with what is wrong and the e
   const std::vector<Wrong> wrongs = {
       {{"--method", "comon_refinement"}, "there is no plug-in 'comon_refinement'; did you mean 'common_refinement'?"},
       {{"--source", "nowhere.msh"},
-       "module 'fluid' (probe_fluid, inline) failed in define, before the first step: mesh = \"nowhere.msh\": "
-       "nowhere.msh: cannot be read (No such file or directory); a path is taken from the folder in which the run was "
+       "module 'fluid' (probe_fluid, inline) failed in define, before the first step: nowhere.msh: cannot be read (No "
+       "such file or directory); a path is taken from the folder in which the run was "
        "started"},
       {{"--target", "circle:80"}, "circle:80: of unknown format; mesh files end in .msh, .vtk or .vtu"},
       {{"--source", "line:80", "--target", "line:70", "--traction", "0; 0; 1e4", "--motion", "0; 1"},
