@@ -168,3 +168,36 @@ TEST_CASE("the table has a row per finished run, in their order, and its texts a
                              "0      0.1  completed  0.3\n"
                              "… 1 more\n");
 }
+
+TEST_CASE("a [[plot]] names columns, their product, and the axis that makes the curves")
+{
+  const std::string axes = "[[vary]]\nkey = \"a.x\"\nvalues = [1, 2]\n[[vary]]\nname = \"scheme\"\n"
+                           "points = [{ label = \"A\", set = { \"a.y\" = 1 } }]\n";
+
+  const auto plots = parse(axes + "[[plot]]\ntitle = \"T\"\ny = \"p.q * r.s\"\n"
+                                  "[[plot]]\ntitle = \"U\"\ny = \"p.q\"\ncurves = \"a.x\"\ny_label = \"q [m]\"\n")
+                         .plots;
+
+  REQUIRE(plots.size() == 2);
+  CHECK(plots[0].factors() == Texts{"p.q", "r.s"});
+  CHECK(plots[0].y_label == "p.q * r.s");
+  CHECK(plots[0].curves == "scheme"); // the last axis
+  CHECK(plots[1].factors() == Texts{"p.q"});
+  CHECK(plots[1].curves == "a.x");
+  CHECK(plots[1].y_label == "q [m]");
+}
+
+TEST_CASE("a [[plot]] that nobody can draw is refused with its place")
+{
+  const auto mistakes = [](const std::string& plot) {
+    const auto result = parse_study(head + "[[vary]]\nkey = \"a.x\"\nvalues = [1, 2]\n" + plot,
+                                    MULLION_SOURCE_DIR "/tests/unit/study.toml");
+    return result.diagnostics.size();
+  };
+  CHECK(mistakes("[[plot]]\ntitle = \"T\"\ny = \"q\"\n") == 0);
+  CHECK(mistakes("[[plot]]\ntitle = \"T\"\n") == 1);                                // no y
+  CHECK(mistakes("[[plot]]\ntitle = \"T\"\ny = \"q *\"\n") == 1);                   // half a product
+  CHECK(mistakes("[[plot]]\ntitle = \"T\"\ny = \"q\"\ncurves = \"schem\"\n") == 1); // no such axis
+  CHECK(mistakes("[[plot]]\ntitle = \"T\"\ny = \"q\"\nnormalise = \"maximum\"\n") == 1);
+  CHECK(mistakes("plot = 3\n") == 1);
+}
