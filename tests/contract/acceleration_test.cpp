@@ -117,5 +117,6 @@ TEST_CASE("a field without any residual at the start, as from rest, doesn't drow
   const auto result = folder.run(run);
 
   REQUIRE_MESSAGE(result.exit_code == 0, result.err);
-  for (const double count : read_history(folder / "out/history.csv").at("driver.iterations")) CHECK(count <= 10);
+  const auto history = read_history(folder / "out/history.csv");
+  for (const double count : history.at("driver.iterations")) CHECK(count <= 10);
 }
