@@ -22,7 +22,7 @@ struct CaseRun {
   std::vector<std::string> sets{};  ///< "fluid.cells=20"
   std::vector<std::string> flags{}; ///< "--inline"
   std::string out = "out";          ///< results folder, within the test's folder
-  std::chrono::milliseconds timeout = std::chrono::seconds(60);
+  std::chrono::milliseconds timeout = std::chrono::minutes(4); ///< against hanging; sanitizers are slow
 };
 
 /// A process of a run, found by the runtime folder in its environment: whoever started it, whoever its parent is now.
