@@ -18,10 +18,10 @@ namespace mullion::test {
 
 /// One `mullion run`.
 struct CaseRun {
-  std::string file;                 ///< the case
-  std::vector<std::string> sets{};  ///< "fluid.cells=20"
-  std::vector<std::string> flags{}; ///< "--inline"
-  std::string out = "out";          ///< results folder, within the test's folder
+  std::string file;                                            ///< the case
+  std::vector<std::string> sets{};                             ///< "fluid.cells=20"
+  std::vector<std::string> flags{};                            ///< "--inline"
+  std::string out = "out";                                     ///< results folder, within the test's folder
   std::chrono::milliseconds timeout = std::chrono::minutes(4); ///< against hanging; sanitizers are slow
 };
 
