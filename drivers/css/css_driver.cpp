@@ -51,8 +51,7 @@ public:
     wiring.state_like("load", names_.load);
     const double load_lag = options_.load_time == "end" ? options_.sampling_lag() : options_.sampling_lag() - 0.5;
     wiring.state_net_lag((options_.is_profile_linear() ? 1.0 : 0.5) + alpha + beta + load_lag);
-    wiring.explain_divergence("css takes each solver once a step: where the fluid's added mass outweighs the "
-                              "structure's it diverges at any step size; the scheme \"strong\" iterates");
+    wiring.explain_divergence(added_mass_hint("css", "strong"));
   }
 
   void attach(Coupling& coupling) override

@@ -20,8 +20,7 @@ public:
   {
     names_ = wire_fsi(wiring, options_);
     wiring.state_net_lag((options_.is_profile_linear() ? 2.0 : 1.5) + options_.sampling_lag());
-    wiring.explain_divergence("css_parallel takes each solver once a step: where the fluid's added mass outweighs the "
-                              "structure's it diverges at any step size; the scheme \"strong\" iterates");
+    wiring.explain_divergence(added_mass_hint("css_parallel", "strong"));
   }
 
   void attach(Coupling& coupling) override { roles_ = FsiRoles(coupling, names_); }

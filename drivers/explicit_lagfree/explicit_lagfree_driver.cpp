@@ -27,8 +27,7 @@ public:
     wiring.history(names_.wet, 2); // a^{n-1}
     wiring.state_numbers("previous_dt", 1);
     wiring.state_net_lag(0.0);
-    wiring.explain_divergence("explicit_lagfree takes each solver once a step: where the fluid's added mass outweighs "
-                              "the structure's it diverges at any step size; the scheme \"strong\" iterates");
+    wiring.explain_divergence(added_mass_hint("explicit_lagfree", "strong"));
   }
 
   void attach(Coupling& coupling) override

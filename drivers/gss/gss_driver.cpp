@@ -47,8 +47,7 @@ public:
     wiring.state_numbers("previous_dt", 1);
     const double motion_lag = (options_.is_profile_linear() ? 0.0 : -0.5) + 1.0 - (a0 - a1);
     wiring.state_net_lag(motion_lag + options_.sampling_lag() + (options_.load == "mean" ? beta : beta / (1.0 - beta)));
-    wiring.explain_divergence("gss takes each solver once a step: where the fluid's added mass outweighs the "
-                              "structure's it diverges at any step size; the scheme \"strong\" iterates");
+    wiring.explain_divergence(added_mass_hint("gss", "strong"));
   }
 
   void attach(Coupling& coupling) override

@@ -31,8 +31,7 @@ public:
     names_ = wire_fsi(wiring, options_, {.sends_evaluation_velocity = options_.w_end});
     clock_.define(wiring, options_.starts_early, {names_.fluid, names_.mesh_motion});
     wiring.state_net_lag(options_.sampling_lag());
-    wiring.explain_divergence("iss takes each solver once a step: where the fluid's added mass outweighs the "
-                              "structure's it diverges at any step size; the scheme \"strong\" iterates");
+    wiring.explain_divergence(added_mass_hint("iss", "strong"));
   }
 
   void attach(Coupling& coupling) override

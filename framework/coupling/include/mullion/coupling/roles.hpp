@@ -93,6 +93,16 @@ inline void require_legal_exchange(const FsiOptions& options)
                   "the structure receive the load, or allow a traction that is recovered from it: recover = true");
 }
 
+/// What a user should know when a scheme without iterations diverges: for Wiring::explain_divergence.
+/// @param instead  the scheme that iterates
+inline std::string added_mass_hint(const std::string& scheme, const std::string& instead)
+{
+  return scheme +
+         " takes each solver once a step: where the fluid's added mass outweighs the structure's it diverges at "
+         "any step size; the scheme \"" +
+         instead + "\" iterates";
+}
+
 /// Declare the shared connections.
 inline FsiNames wire_fsi(Wiring& wiring, const FsiOptions& options, FsiWiring extra = {})
 {
