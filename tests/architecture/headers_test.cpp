@@ -76,8 +76,9 @@ TEST_SUITE("full")
   {
     check_headers("framework/src", compiler_and_flags("framework/src/run/session.cpp"));
     auto command = compiler_and_flags("framework/cli/main.cpp");
-    for (const auto& folder : kernel_folders_of_tree()) // which others include as "folder/….hpp"
-      command.push_back("-I" + (source_root() / folder).parent_path().string());
+    for (const auto& folders : {kernel_folders_of_tree(), shared_code_folders_of_tree()})
+      for (const auto& folder : folders) // which others include as "folder/….hpp"
+        command.push_back("-I" + (source_root() / folder).parent_path().string());
     check_headers("modules", command);
     check_headers("drivers", command);
     check_headers("examples", command);

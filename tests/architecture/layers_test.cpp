@@ -41,14 +41,27 @@ bool is_beside(const std::string& file, const Include& include)
          fs::exists(source_root() / fs::path(file).parent_path() / include.name);
 }
 
-/// "surface/x.hpp" of a folder of kernels that several plug-ins share.
-bool is_shared_kernel(const Include& include)
+/// "surface/x.hpp" of one of the folders under modules/.
+bool is_of_folder(const Include& include, const std::vector<std::string>& folders)
 {
-  const auto folders = kernel_folders_of_tree();
   return include.is_quoted && std::any_of(folders.begin(), folders.end(), [&](const auto& folder) {
            return starts_with(folder, "modules/") && starts_with(include.name, last_part(folder) + "/") &&
                   fs::exists(source_root() / fs::path(folder).parent_path() / include.name);
          });
+}
+
+/// Kernels that several plug-ins share.
+bool is_shared_kernel(const Include& include)
+{
+  static const auto folders = kernel_folders_of_tree();
+  return is_of_folder(include, folders);
+}
+
+/// Module code that several plug-ins share.
+bool is_shared_code(const Include& include)
+{
+  static const auto folders = shared_code_folders_of_tree();
+  return is_of_folder(include, folders);
 }
 
 /// A plug-in's files but those of its Module or Driver class: kernels.
@@ -109,10 +122,12 @@ TEST_CASE("the framework's sources include their own headers only")
 
 TEST_CASE("a module knows the SDK, its kernels and Eigen")
 {
-  for (const auto& folder : plugin_folders_of_tree())
+  auto folders = plugin_folders_of_tree();
+  for (const auto& folder : shared_code_folders_of_tree()) folders.push_back(folder);
+  for (const auto& folder : folders)
     if (starts_with(folder, "modules/"))
       check_includes(sources_under(folder), [](const auto& file, const Include& i) {
-        return is_beside(file, i) || is_shared_kernel(i) || is_of(i, {"mullion/sdk", "Eigen"});
+        return is_beside(file, i) || is_shared_kernel(i) || is_shared_code(i) || is_of(i, {"mullion/sdk", "Eigen"});
       });
 }
 

@@ -30,12 +30,14 @@ std::vector<Include> includes_of(const std::string& file);
 /// A C++ standard header or one of the system: no folder in it.
 bool is_standard(const Include& include);
 
-/// Folders with a CMakeLists.txt two levels below modules/ and one below drivers/, and with a plugin.cpp or a
-/// <name>_driver.cpp.
+/// Folders of modules/ and drivers/ whose CMakeLists.txt adds a module or a driver.
 std::vector<std::string> plugin_folders_of_tree();
 
-/// Those without either: kernels that several plug-ins share.
+/// Libraries of kernels that several plug-ins share.
 std::vector<std::string> kernel_folders_of_tree();
+
+/// Those without a CMakeLists.txt of their own: module code that several plug-ins compile.
+std::vector<std::string> shared_code_folders_of_tree();
 
 /// "modules/fluid/euler_1d" -> "euler_1d"
 std::string last_part(const std::string& path);

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <regex>
+#include <set>
 #include <sstream>
 
 namespace mullion::test {
@@ -63,24 +64,36 @@ bool is_standard(const Include& include) { return !include.is_quoted && include.
 
 namespace {
 
-std::vector<std::string> folders_of_tree(bool are_plugins)
+enum class FolderKind { plugin, kernels, shared_code };
+
+/// What a folder of sources under modules/ or drivers/ is: its CMakeLists.txt tells.
+FolderKind kind_of(const std::string& folder)
 {
-  std::vector<std::string> folders;
+  const auto list = folder + "/CMakeLists.txt";
+  if (!fs::exists(source_root() / list)) return FolderKind::shared_code;
+  const bool is_plugin = text_of(list).find("mullion_add_module(") != std::string::npos ||
+                         text_of(list).find("mullion_add_driver(") != std::string::npos;
+  return is_plugin ? FolderKind::plugin : FolderKind::kernels;
+}
+
+std::vector<std::string> folders_of_tree(FolderKind kind)
+{
+  std::set<std::string> folders;
   for (const char* root : {"modules", "drivers"})
-    for (const auto& file : files_under(root, {"CMakeLists.txt"})) {
+    for (const auto& file : sources_under(root)) {
       const auto folder = fs::path(file).parent_path().string();
-      const bool is_plugin = fs::exists(source_root() / folder / "plugin.cpp") ||
-                             fs::exists(source_root() / folder / (last_part(folder) + "_driver.cpp"));
-      if (folder != root && is_plugin == are_plugins) folders.push_back(folder);
+      if (folder != root && kind_of(folder) == kind) folders.insert(folder);
     }
-  return folders;
+  return {folders.begin(), folders.end()};
 }
 
 } // namespace
 
-std::vector<std::string> plugin_folders_of_tree() { return folders_of_tree(true); }
+std::vector<std::string> plugin_folders_of_tree() { return folders_of_tree(FolderKind::plugin); }
 
-std::vector<std::string> kernel_folders_of_tree() { return folders_of_tree(false); }
+std::vector<std::string> kernel_folders_of_tree() { return folders_of_tree(FolderKind::kernels); }
+
+std::vector<std::string> shared_code_folders_of_tree() { return folders_of_tree(FolderKind::shared_code); }
 
 std::string last_part(const std::string& path) { return fs::path(path).filename().string(); }
 

@@ -1,31 +1,12 @@
 // The baseline that users of other couplers know as nearest neighbour: each fluid node's load goes to the nearest
 // structure node, its motion comes from there. First order for motion, and no order for traction.
-#include "surface_transfer/surface_transfer.hpp"
+#include "surface_transfer/projected_transfer.hpp"
 
 #include <mullion/sdk/plugin.hpp>
 
 namespace mullion::nearest_neighbor {
 
-using surface_transfer::Pairing;
-
-class NearestNeighbor final : public surface_transfer::SurfaceTransfer {
-public:
-  struct Options : surface_transfer::CommonOptions {
-    static constexpr auto table() { return common_table(); }
-  };
-  explicit NearestNeighbor(const Options& options) : SurfaceTransfer(options), options_(options) {}
-
-private:
-  [[nodiscard]] Pairing pair(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure,
-                             const surface_transfer::Wanted& wanted) const override
-  {
-    const auto projection = surface::nearest_nodes(fluid, structure);
-    return {surface::operators_of_projection(fluid, structure, projection, wanted.location, wanted.fluid_mass),
-            surface_transfer::report_of_projection(fluid, structure, projection)};
-  }
-
-  Options options_;
-};
+using NearestNeighbor = surface_transfer::ProjectedTransfer<surface::nearest_nodes>;
 
 } // namespace mullion::nearest_neighbor
 

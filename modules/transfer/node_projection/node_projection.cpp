@@ -1,32 +1,13 @@
 // Transfer by node projection (Farhat, Lesoinne, Le Tallec 1998; Jaiman et al. 2011, Eq. (3)): each fluid node's load
 // goes to the structure's shape functions where the node lies. Keeps force and work with interpolated motion; a
 // constant traction arrives wrong by tens of per cent where the meshes do not match.
-#include "surface_transfer/surface_transfer.hpp"
+#include "surface_transfer/projected_transfer.hpp"
 
 #include <mullion/sdk/plugin.hpp>
 
 namespace mullion::node_projection {
 
-using surface_transfer::Pairing;
-
-class NodeProjection final : public surface_transfer::SurfaceTransfer {
-public:
-  struct Options : surface_transfer::CommonOptions {
-    static constexpr auto table() { return common_table(); }
-  };
-  explicit NodeProjection(const Options& options) : SurfaceTransfer(options), options_(options) {}
-
-private:
-  [[nodiscard]] Pairing pair(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure,
-                             const surface_transfer::Wanted& wanted) const override
-  {
-    const auto projection = surface::node_projection(fluid, structure, surface::FaceTree(structure, 0.0));
-    return {surface::operators_of_projection(fluid, structure, projection, wanted.location, wanted.fluid_mass),
-            surface_transfer::report_of_projection(fluid, structure, projection)};
-  }
-
-  Options options_;
-};
+using NodeProjection = surface_transfer::ProjectedTransfer<surface_transfer::closest_points>;
 
 } // namespace mullion::node_projection
 

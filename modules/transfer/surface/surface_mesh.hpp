@@ -40,6 +40,22 @@ struct SurfaceMesh {
   }
 };
 
+/// A mesh from blocks of elements, one after the other: anything with a `connectivity` (nodes of a face x faces).
+/// @param nodes  (dimension x nodes) [m]
+template <class Blocks> SurfaceMesh mesh_of_blocks(const Eigen::MatrixXd& nodes, const Blocks& blocks)
+{
+  SurfaceMesh mesh;
+  mesh.dimension = static_cast<int>(nodes.rows());
+  mesh.nodes = nodes;
+  mesh.face_begin.push_back(0);
+  for (const auto& block : blocks)
+    for (Eigen::Index e = 0; e < block.connectivity.cols(); ++e) {
+      for (Eigen::Index k = 0; k < block.connectivity.rows(); ++k) mesh.face_nodes.push_back(block.connectivity(k, e));
+      mesh.face_begin.push_back(static_cast<std::int32_t>(mesh.face_nodes.size()));
+    }
+  return mesh;
+}
+
 /// What is wrong with a mesh, in words that name the place; "" if nothing is.
 ///
 /// Dimension and shapes, node numbers in range, nodes per face (2 in 2D, 3 or 4 in 3D), finite coordinates, no node

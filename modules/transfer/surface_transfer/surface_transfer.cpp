@@ -137,18 +137,10 @@ void SurfaceTransfer::attach()
 SurfaceMesh SurfaceTransfer::mesh_of(const std::string& window) const
 {
   const auto mesh_pane = pane(window);
-  SurfaceMesh mesh;
-  mesh.dimension = static_cast<int>(mesh_pane.coordinates.rows());
-  mesh.nodes = mesh_pane.coordinates;
-  mesh.face_begin.push_back(0);
-  for (const auto& block : mesh_pane.blocks) {
+  for (const auto& block : mesh_pane.blocks)
     MULLION_REQUIRE(block.type != ElementType::point1, Errc::shape,
                     "it joins lines and surfaces; {} consists of points: use point_transfer", window);
-    for (Eigen::Index e = 0; e < block.connectivity.cols(); ++e) {
-      for (Eigen::Index k = 0; k < block.connectivity.rows(); ++k) mesh.face_nodes.push_back(block.connectivity(k, e));
-      mesh.face_begin.push_back(static_cast<std::int32_t>(mesh.face_nodes.size()));
-    }
-  }
+  auto mesh = surface::mesh_of_blocks(mesh_pane.coordinates, mesh_pane.blocks);
   const auto complaint = surface::complaint_about(mesh);
   MULLION_REQUIRE(complaint.empty(), Errc::shape, "{}: {}", window, complaint);
   return mesh;
