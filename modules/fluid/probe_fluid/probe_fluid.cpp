@@ -1,41 +1,11 @@
 #include "probe_fluid.hpp"
 
-#include "files/file_error.hpp"
-#include "files/read.hpp"
+#include "probe_module/probe_module.hpp"
 #include "surface/balance.hpp"
 
 namespace mullion::probe_fluid {
-namespace {
 
-/// The surface that the options name.
-Pane read_pane(const std::string& text, const std::string& group)
-{
-  std::string place; // what the error does not say itself
-  try {
-    const auto mesh = mesh_files::read_or_generate(text);
-    place = fmt::format("mesh = \"{}\": ", text);
-    const auto surface = mesh_files::interface_of(mesh, group);
-    Pane pane{0, surface.nodes, {}};
-    for (const auto& [shape, connectivity] : surface.blocks)
-      pane.blocks.push_back({static_cast<ElementType>(shape), connectivity}); // the numbers are the same
-    return pane;
-  } catch (const mesh_files::FileError& error) {
-    throw Error(Errc::config, place + error.what());
-  }
-}
-
-expressions::VectorExpression compiled(const char* parameter, const std::string& text, const std::string& along,
-                                       Eigen::Index dimension)
-{
-  const auto meant = along == "normal" ? expressions::Along::normal : expressions::Along::components;
-  try {
-    return {text, meant, dimension};
-  } catch (const expressions::ExpressionError& error) {
-    throw Error(Errc::config, fmt::format("{}: {}", parameter, error.what()));
-  }
-}
-
-} // namespace
+using probe_module::compiled;
 
 std::vector<FieldSpec> ProbeFluid::fields()
 {
@@ -62,7 +32,7 @@ std::vector<InputSpec> ProbeFluid::inputs()
 
 void ProbeFluid::define(const TimeStep& initial)
 {
-  make_window("wall", {read_pane(options_.mesh, options_.group)});
+  make_window("wall", {probe_module::read_pane(options_.mesh, options_.group)});
   look_up();
   write(initial.end, false);
 }
@@ -72,10 +42,7 @@ void ProbeFluid::attach() { look_up(); }
 void ProbeFluid::look_up()
 {
   const auto wall = pane("wall");
-  auto mesh = probes::faces_of(wall.coordinates, wall.blocks);
-  const auto complaint = surface::complaint_about(mesh);
-  MULLION_REQUIRE(complaint.empty(), Errc::shape, "mesh = \"{}\": {}", options_.mesh, complaint);
-  surface_ = probes::sampled(std::move(mesh), options_.reverse_normal);
+  surface_ = probe_module::sampled_pane(wall, options_.mesh, options_.reverse_normal);
   function_ = compiled("function", options_.function, options_.along, wall.coordinates.rows());
   expected_motion_ = compiled("expected_motion", options_.expected_motion, "components", wall.coordinates.rows());
   traction_ = field("wall", "traction");

@@ -25,21 +25,6 @@ struct SampledSurface {
   Field nodal_normals;     ///< unit vectors along the integral of N_i n
 };
 
-/// Faces from blocks of elements: anything with a `connectivity` (nodes x elements), one block after the other.
-template <class Blocks> surface::SurfaceMesh faces_of(const Eigen::MatrixXd& nodes, const Blocks& blocks)
-{
-  surface::SurfaceMesh mesh;
-  mesh.dimension = static_cast<int>(nodes.rows());
-  mesh.nodes = nodes;
-  mesh.face_begin.push_back(0);
-  for (const auto& block : blocks)
-    for (Eigen::Index e = 0; e < block.connectivity.cols(); ++e) {
-      for (Eigen::Index k = 0; k < block.connectivity.rows(); ++k) mesh.face_nodes.push_back(block.connectivity(k, e));
-      mesh.face_begin.push_back(static_cast<std::int32_t>(mesh.face_nodes.size()));
-    }
-  return mesh;
-}
-
 /// @pre complaint_about(mesh) has none
 [[nodiscard]] SampledSurface sampled(surface::SurfaceMesh mesh, bool is_reversed);
 

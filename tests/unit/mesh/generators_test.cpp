@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <numbers>
 #include <string>
 #include <unistd.h>
@@ -197,7 +198,8 @@ TEST_CASE("meshes go to files and back by the ending of their names")
 {
   const auto mesh = generated("box:2x2");
   for (const char* ending : {".msh", ".vtu"}) {
-    const std::string file = "/tmp/mullion-mesh-" + std::to_string(::getpid()) + ending;
+    const auto file =
+        (std::filesystem::temp_directory_path() / ("mullion-mesh-" + std::to_string(::getpid()) + ending)).string();
     write_mesh(mesh, file);
 
     const auto again = read_or_generate(file);

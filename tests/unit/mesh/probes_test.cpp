@@ -19,7 +19,7 @@ namespace {
 SampledSurface sampled_text(const std::string& text, bool is_reversed = false)
 {
   const auto mesh = files::interface_of(files::read_or_generate(text), "");
-  return sampled(faces_of(mesh.nodes, mesh.blocks), is_reversed);
+  return sampled(surface::mesh_of_blocks(mesh.nodes, mesh.blocks), is_reversed);
 }
 
 Eigen::VectorXd along_normal(const Eigen::VectorXd&, const Eigen::VectorXd& normal) { return normal; }
