@@ -106,6 +106,7 @@ const std::vector<PluginCase> cases = {
            {"iteration=parallel", "acceleration=iqn_mvj", "structure.substeps=2", "load_interpolation=constant"}),
     {"tests/verification/added_mass.toml",
      {"run.end_time=4.0e-3", "output.every=10", "driver.reuse=3", "structure.density=75.0"}}, // without a mesh to move
+    {"tests/contract/uncoupled.toml", {}},
     probed("common_refinement", {"transfer.motion=adjoint"}),
     probed("common_refinement", {"driver.fluid_exports=traction", "fluid.on=faces", "driver.structure_receives=load",
                                  "transfer.metric=average", "transfer.mass=native"}),

@@ -256,6 +256,23 @@ private:
 
 } // namespace
 
+void drop_declined_offers(Wiring& wiring, const Case& value, plugin::Catalogue& catalogue)
+{
+  const auto is_declared = [&](const std::string& port) {
+    PortName name;
+    if (!split(port, name)) return true; // check_wiring says what is wrong with it
+    for (const auto& module : value.modules) {
+      if (module.instance != name.instance) continue;
+      const auto& plugin = catalogue.open(module.plugin).module();
+      const std::span inputs(plugin.inputs, plugin.n_inputs);
+      return std::any_of(inputs.begin(), inputs.end(),
+                         [&](const auto& input) { return name.window == input.window && name.field == input.name; });
+    }
+    return true;
+  };
+  std::erase_if(wiring.connections, [&](const Connection& c) { return c.is_offer && !is_declared(c.receiver); });
+}
+
 std::vector<std::string> check_wiring(const Case& value, const Wiring& wiring, plugin::Catalogue& catalogue)
 {
   return Checker(value, wiring, catalogue).check();

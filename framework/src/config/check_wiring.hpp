@@ -12,6 +12,9 @@
 
 namespace mullion::config {
 
+/// Offers to inputs that are not declared are no connections. For what Driver::define left, before anything else.
+void drop_declined_offers(Wiring& wiring, const Case& value, plugin::Catalogue& catalogue);
+
 /// All mistakes, one sentence each: unknown ports, units, locations, components or natures that differ, inputs
 /// connected never or twice, more levels than there are.
 /// A vector field (as many components as its window has dimensions) against a fixed number is left to the start

@@ -65,6 +65,15 @@ bool check_side(CaseReader& reader, const Node& node, const std::string& kind, b
   return true;
 }
 
+/// One side of an interface without the other: nothing to couple.
+bool has_one_solver(const Case& value)
+{
+  const auto has = [&](std::string_view kind) {
+    return std::any_of(value.modules.begin(), value.modules.end(), [&](const auto& m) { return m.kind == kind; });
+  };
+  return has("fluid") != has("structure");
+}
+
 bool read_interfaces(CaseReader& reader, const Node& coupling, bool are_modules_known)
 {
   const auto wrong = [&](const Place& place, const std::string& message) {
@@ -72,6 +81,7 @@ bool read_interfaces(CaseReader& reader, const Node& coupling, bool are_modules_
     return false;
   };
   const auto* entry = coupling.table()->find("interfaces");
+  if (entry == nullptr && are_modules_known && has_one_solver(reader.value)) return true;
   if (entry == nullptr)
     return wrong(coupling.place, fmt::format("has no 'interfaces'; expected the pair of windows that face each other: "
                                              "{}",
@@ -129,8 +139,12 @@ bool read_coupling(CaseReader& reader, bool are_modules_known)
 {
   const Node* coupling = reader.table("coupling");
   if (coupling == nullptr) {
-    if (reader.root.table()->find("coupling") == nullptr)
-      reader.diagnostics.add({}, fmt::format("there is no [coupling]; add the table with {}", example));
+    if (reader.root.table()->find("coupling") != nullptr) return false;
+    if (are_modules_known && has_one_solver(reader.value)) {
+      distribute_reference_pressure(reader, {}, nullptr);
+      return true;
+    }
+    reader.diagnostics.add({}, fmt::format("there is no [coupling]; add the table with {}", example));
     return false;
   }
   const auto values = read_parameters(*coupling, {"[coupling]", ""}, detail::parameter_specs<CouplingOptions>(),
@@ -140,7 +154,15 @@ bool read_coupling(CaseReader& reader, bool are_modules_known)
   const auto* given = coupling->table()->find(reference_pressure);
   if (given == nullptr || values[0].is_given) // a wrong value was reported already
     distribute_reference_pressure(reader, coupling->place, given == nullptr ? nullptr : &given->value);
-  return read_interfaces(reader, *coupling, are_modules_known);
+  if (!read_interfaces(reader, *coupling, are_modules_known)) return false;
+  if (reader.value.interfaces.empty() && reader.value.displacement_limit > 0.0) {
+    reader.diagnostics.add(coupling->table()->find("displacement_limit")->value.place,
+                           fmt::format("[coupling] displacement_limit watches the wet surface, and there is no "
+                                       "interface: leave it out, or give {}",
+                                       example));
+    return false;
+  }
+  return true;
 }
 
 } // namespace mullion::config

@@ -108,6 +108,7 @@ void check_scheme(CaseReader& reader, bool are_times_sound)
   } catch (const std::exception& error) {
     return report(scheme, error.what());
   }
+  drop_declined_offers(wiring, value, reader.catalogue);
   for (const auto& mistake : check_wiring(value, wiring, reader.catalogue)) report(scheme, mistake);
   for (const auto& connection : wiring.connections)
     value.connections.push_back({connection.receiver, connection.source, policy_name(connection.policy)});

@@ -1,5 +1,6 @@
 // How a session comes to life: modules described in the control object, hosts spawned, windows defined, everything
 // attached, the first exchange made; and how it comes to life again after hosts died.
+#include "config/check_wiring.hpp"
 #include "config/parameter_table.hpp"
 #include "log/console.hpp"
 #include "run/session.hpp"
@@ -125,6 +126,7 @@ void Session::describe_modules()
   const auto values = config::to_values(case_.driver_parameters);
   const std::unique_ptr<Driver> driver(driver_library.driver().create(values.data()));
   driver->define(*wiring_);
+  config::drop_declined_offers(*wiring_, case_, catalogue_);
 
   for (std::uint32_t m = 0; m < modules_.size(); ++m) {
     auto& module = modules_[m];

@@ -3,6 +3,7 @@
 //   fluid wall traction    -> transfer (fluid side)      transfer.loads  -> traction on the structure's side
 //   what the driver sends  -> transfer (structure side)  transfer.motion -> motion on the fluid's side
 //   motion on the fluid's side -> mesh motion -> node velocity of the fluid (bound, at both ends of the step)
+//   the fluid's node coordinates -> mesh motion, if it looks where the mesh is (bound)
 //
 // What is left to the scheme: the motion that it sends, on the structure's nodes (theirs, predicted, mixed, iterated),
 // and the load that the structure receives. A scheme that corrects on the fluid's side (wire_fsi: corrects_on_fluid)
@@ -129,9 +130,11 @@ inline FsiNames wire_fsi(Wiring& wiring, const FsiOptions& options, FsiWiring ex
   if (!is_velocity) wiring.bind(names.wall + "." + options.motion, moved);
   else if (extra.corrects_on_fluid) wiring.store(names.mesh_motion + ".wall.velocity");
   else wiring.bind(names.mesh_motion + ".wall.velocity", moved);
-  if (is_velocity)
+  if (is_velocity) {
     wiring.bind(names.fluid + ".volume.velocity", names.mesh_motion + ".volume.velocity",
                 options.is_profile_linear() ? TimePolicy::linear : TimePolicy::constant);
+    wiring.offer(names.mesh_motion + ".volume.coordinates", names.fluid + ".volume.coordinates", TimePolicy::linear);
+  }
   if (extra.sends_evaluation_velocity) wiring.store(names.wall + ".evaluation_velocity");
   wiring.store(names.load, options.load_interpolation == "linear" ? TimePolicy::linear : TimePolicy::constant);
   return names;

@@ -24,6 +24,7 @@ struct Connection {
   std::string source;                       ///< bound: instance.window.field; empty: stored
   TimePolicy policy = TimePolicy::constant; ///< how the receiver reads between the stamped levels
   int levels = 2;                           ///< stored: slots of the companion, the working one included
+  bool is_offer = false;                    ///< of no effect if the receiver has no such input
 };
 
 /// A field of driver/state, shaped like a port's field (or several of that shape side by side), or `size` numbers.
@@ -70,6 +71,11 @@ public:
   void bind(const std::string& receiver, const std::string& source, TimePolicy policy = TimePolicy::constant)
   {
     connections.push_back({receiver, source, policy, 0});
+  }
+  /// The same for a field that some modules want and others do without: connected where the receiver declares it.
+  void offer(const std::string& receiver, const std::string& source, TimePolicy policy = TimePolicy::constant)
+  {
+    connections.push_back({receiver, source, policy, 0, true});
   }
   /// The driver writes the received field itself (combined, corrected, relaxed) with InputField::put.
   void store(const std::string& receiver, TimePolicy policy = TimePolicy::constant, int committed_levels = 1)
