@@ -68,6 +68,7 @@ ReceivedField Coupling::received(const std::string& port, std::uint32_t pane) co
   const auto at = session_->find_field(port, true, pane);
   return {session_, at.window, at.field};
 }
+Pane Coupling::pane(const std::string& window, std::uint32_t pane) const { return session_->pane_of(window, pane); }
 void Coupling::warn(const std::string& text) const { session_->warn(text); }
 DriverField Coupling::state(const std::string& name) const
 {

@@ -316,6 +316,17 @@ FieldAddress Session::find_state(const std::string& name)
   return {state_window_, static_cast<std::uint32_t>(field)};
 }
 
+Pane Session::pane_of(const std::string& window, std::uint32_t pane)
+{
+  auto name = window;
+  if (const auto dot = name.find('.'); dot != std::string::npos) name[dot] = '/';
+  const auto id = control_.find_window(name);
+  MULLION_REQUIRE(id != shm::no_window && pane < windows_.view(id).header().n_panes, Errc::config,
+                  "driver {}: there is no pane {} of a window {}", case_.scheme, pane, window);
+  std::vector<mullion_block> blocks;
+  return to_pane(windows_.view(id).pane(pane, blocks));
+}
+
 ConstArray Session::read(FieldAddress at, int level)
 {
   const auto found = windows_.locate(at.window, at.field, level, control_.epoch.load(std::memory_order_relaxed));

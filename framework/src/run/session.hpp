@@ -69,6 +69,7 @@ public:
                                             std::uint32_t n_results) const;
   [[nodiscard]] FieldAddress find_field(const std::string& port, bool is_received, std::uint32_t pane);
   [[nodiscard]] FieldAddress find_state(const std::string& name);
+  [[nodiscard]] Pane pane_of(const std::string& window, std::uint32_t pane);
   [[nodiscard]] ConstArray read(FieldAddress at, int level);
   [[nodiscard]] Array write(FieldAddress at);
   void stamp(FieldAddress at, double time, std::uint32_t kind);

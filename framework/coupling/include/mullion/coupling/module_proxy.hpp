@@ -3,6 +3,7 @@
 #pragma once
 
 #include <mullion/sdk/error.hpp>
+#include <mullion/sdk/mesh.hpp>
 #include <mullion/sdk/window.hpp>
 
 #include <cstdint>
@@ -153,6 +154,8 @@ public:
   [[nodiscard]] ModuleField field(const std::string& port, std::uint32_t pane = 0) const;
   [[nodiscard]] ReceivedField received(const std::string& port, std::uint32_t pane = 0) const;
   [[nodiscard]] DriverField state(const std::string& name) const;
+  /// The reference mesh of a module's window, say an interface. @param window instance.window
+  [[nodiscard]] Pane pane(const std::string& window, std::uint32_t pane = 0) const;
   /// Tell the user, with the driver's name, without ending the run.
   void warn(const std::string& text) const;
 

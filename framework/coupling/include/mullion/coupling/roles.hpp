@@ -51,14 +51,19 @@ struct FsiOptions {
                                 "load within the structure's substeps: linear from the last step's, or constant",
                                 one_of("linear", "constant"))};
   }
+  static constexpr auto receives_option()
+  {
+    return std::tuple{parameter("structure_receives", &FsiOptions::structure_receives, "",
+                                "what the structure takes: traction, or load (nodal forces)",
+                                one_of("traction", "load"))};
+  }
   static constexpr auto exchange_options()
   {
     return std::tuple{
         parameter("fluid_exports", &FsiOptions::fluid_exports, "",
                   "what the fluid's wall offers: traction (one value a face), nodal_traction, or load (nodal forces)",
                   one_of("traction", "nodal_traction", "load")),
-        parameter("structure_receives", &FsiOptions::structure_receives, "",
-                  "what the structure takes: traction, or load (nodal forces)", one_of("traction", "load")),
+        std::get<0>(receives_option()),
         parameter("recover", &FsiOptions::recover, "",
                   "allow a traction that is recovered from the fluid's nodal forces")};
   }
