@@ -146,16 +146,18 @@ double growth_guess(std::span<const double> times, std::span<const double> value
   return n < 2.0 || spread <= 0.0 ? 0.0 : (n * sum_ty - sum_t * sum_y) / spread;
 }
 
-/// The model in units of the record, exp(s tau) (a cos omega tau + b sin omega tau) + c: tau counts from the end of
-/// the record at which the oscillation is largest, so that exp <= 1 and the derivatives hardly depend on each other.
+/// The model in units of the record, exp(s tau) (a cos omega tau + b sin omega tau) + c + d tau: tau counts from the
+/// end of the record at which the oscillation is largest, so that exp <= 1 and the derivatives hardly depend on each
+/// other.
 struct Model {
   double s, omega; ///< sigma T, 2 pi f T
-  double a = 0.0, b = 0.0, c = 0.0;
+  double a = 0.0, b = 0.0, c = 0.0, d = 0.0;
 };
+constexpr int n_unknowns = 6;
 
 struct Normal {
-  Eigen::Matrix<double, 5, 5> matrix;
-  Eigen::Matrix<double, 5, 1> right;
+  Eigen::Matrix<double, n_unknowns, n_unknowns> matrix;
+  Eigen::Matrix<double, n_unknowns, 1> right;
   double square; ///< of the residual
 };
 
@@ -167,7 +169,7 @@ public:
   {
   }
 
-  /// Sums for the derivatives to (s, omega, A, B, C) and the residual of the model.
+  /// Sums for the derivatives to (s, omega, a, b, c, d) and the residual of the model.
   [[nodiscard]] Normal normal(const Model& m) const
   {
     Normal sums{decltype(Normal::matrix)::Zero(), decltype(Normal::right)::Zero(), 0.0};
@@ -177,9 +179,9 @@ public:
       const double e = std::exp(m.s * tau);
       const double cosine = e * std::cos(m.omega * tau), sine = e * std::sin(m.omega * tau);
       const double wave = m.a * cosine + m.b * sine;
-      const double r = values_[i] - mean_ - wave - m.c;
-      const double d[5] = {tau * wave, tau * (m.b * cosine - m.a * sine), cosine, sine, 1.0};
-      for (int row = 0; row < 5; ++row) {
+      const double r = values_[i] - mean_ - wave - m.c - m.d * tau;
+      const double d[n_unknowns] = {tau * wave, tau * (m.b * cosine - m.a * sine), cosine, sine, 1.0, tau};
+      for (int row = 0; row < n_unknowns; ++row) {
         for (int column = 0; column <= row; ++column) sums.matrix(row, column) += d[row] * d[column];
         sums.right(row) += d[row] * r;
       }
@@ -189,14 +191,15 @@ public:
     return sums;
   }
 
-  /// The best A, B and C for the s and omega of `m`.
+  /// The best a to d for the s and omega of `m`.
   void solve_linear(Model& m) const
   {
     const auto sums = normal({m.s, m.omega});
-    const Eigen::Vector3d abc = sums.matrix.bottomRightCorner<3, 3>().ldlt().solve(sums.right.tail<3>());
-    m.a = abc[0];
-    m.b = abc[1];
-    m.c = abc[2];
+    const Eigen::Vector4d linear = sums.matrix.bottomRightCorner<4, 4>().ldlt().solve(sums.right.tail<4>());
+    m.a = linear[0];
+    m.b = linear[1];
+    m.c = linear[2];
+    m.d = linear[3];
   }
 
   [[nodiscard]] double length() const { return length_; }
@@ -212,11 +215,11 @@ double minimise(const Fit& fit, Model& m)
   auto sums = fit.normal(m);
   double damping = 1e-6;
   for (int iteration = 0; iteration < 40; ++iteration) {
-    Eigen::Matrix<double, 5, 5> damped = sums.matrix;
+    Eigen::Matrix<double, n_unknowns, n_unknowns> damped = sums.matrix;
     damped.diagonal() *= 1.0 + damping;
-    const Eigen::Matrix<double, 5, 1> d = damped.ldlt().solve(sums.right);
+    const Eigen::Matrix<double, n_unknowns, 1> d = damped.ldlt().solve(sums.right);
     if (!d.allFinite()) break;
-    Model next{m.s + d[0], m.omega + d[1], m.a + d[2], m.b + d[3], m.c + d[4]};
+    Model next{m.s + d[0], m.omega + d[1], m.a + d[2], m.b + d[3], m.c + d[4], m.d + d[5]};
     if ((next.s >= 0.0) != (m.s >= 0.0)) fit.solve_linear(next); // tau_0 went to the other end
     const auto next_sums = fit.normal(next);
     if (!(next_sums.square <= sums.square)) { // no better, or NaN

@@ -29,7 +29,7 @@ struct Growth {
   double relative_residual = 1.0; ///< |v - fit| / |v - mean|: near 0 if the model holds, 1 if nothing was found
 };
 
-/// Fit exp(sigma t) (A cos 2 pi f t + B sin 2 pi f t) + C by least squares (Levenberg-Marquardt in sigma and
+/// Fit exp(sigma t) (A cos 2 pi f t + B sin 2 pi f t) + C + D t by least squares (Levenberg-Marquardt in sigma and
 /// f, the rest being linear), starting from the given frequency and the growth of the amplitude over windows of
 /// two periods.
 ///

@@ -122,8 +122,8 @@ Values growth(const Measure& m, std::span<const double> times, std::span<const d
 {
   const double frequency = run::dominant_frequency(times, values);
   const auto fit = run::growth_rate(times, values, frequency);
-  if (fit.relative_residual >= 1.0) return {std::nullopt, std::nullopt}; // nothing oscillates
-  return {fit.sigma * m.scale, fit.relative_residual};
+  if (fit.relative_residual >= 1.0) return {std::nullopt, std::nullopt, std::nullopt}; // nothing oscillates
+  return {fit.sigma * m.scale, fit.relative_residual, fit.frequency};
 }
 
 Values doubling(const Measure& m, std::span<const double> times, std::span<const double> values)
@@ -271,7 +271,7 @@ double deviation_ratio(std::span<const double> times, std::span<const double> va
 
 std::vector<std::string> columns_of(const Measure& measure)
 {
-  if (measure.kind == "growth_rate") return {measure.name, measure.name + ".residual"};
+  if (measure.kind == "growth_rate") return {measure.name, measure.name + ".residual", measure.name + ".frequency"};
   if (measure.kind == "error_doubling") return {measure.name, measure.name + ".bound"};
   if (measure.kind == "iterations") return {measure.name, measure.name + ".max"};
   return {measure.name};

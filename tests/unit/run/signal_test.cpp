@@ -156,6 +156,19 @@ TEST_CASE("dominant frequency and growth work together on a decaying oscillation
   CHECK(relative_error(growth.frequency, 7.7) < 1e-8);
 }
 
+TEST_CASE("a drift under an oscillation leaves growth and frequency as they are")
+{
+  const Signal signal(4000, 2.5e-4, [](double t) {
+    return 0.3 - 2.0 * t + std::exp(-0.7 * t) * std::cos(two_pi * 25.3 * t);
+  });
+
+  const auto growth = growth_rate(signal.times, signal.values, 25.0);
+
+  CHECK(std::abs(growth.sigma + 0.7) < 1e-7);
+  CHECK(relative_error(growth.frequency, 25.3) < 1e-8);
+  CHECK(growth.relative_residual < 1e-8);
+}
+
 TEST_CASE("unequal steps and noise are no obstacle for the growth, and the residual tells what is left")
 {
   std::mt19937_64 random(2);

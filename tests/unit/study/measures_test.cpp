@@ -121,11 +121,12 @@ TEST_CASE("growth_rate finds the rate of an exponential sine, and nothing where 
 
   const auto values = evaluate(measure, table, {});
 
-  REQUIRE(values.size() == 2);
+  REQUIRE(values.size() == 3);
   REQUIRE(values[0]);
   CHECK(std::abs(*values[0] - 3.0) < 1e-6); // the model is exact; the fit stops at changes of 1e-10 of sigma T = 3
   CHECK(*values[1] < 1e-6);
-  CHECK(columns_of(measure) == std::vector<std::string>{"m", "m.residual"});
+  CHECK(std::abs(*values[2] - 20.0) < 1e-6);
+  CHECK(columns_of(measure) == std::vector<std::string>{"m", "m.residual", "m.frequency"});
   const auto flat = evaluate(measure, history(100, 0.1, [](double) { return 3.0; }), {});
   CHECK(!flat[0]);
   CHECK(!flat[1]);
