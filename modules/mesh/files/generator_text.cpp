@@ -5,6 +5,7 @@
 #include "scanner.hpp"
 
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <set>
@@ -52,13 +53,21 @@ public:
     if (cells_.size() != n) fail(join(cells_.size(), " numbers of cells"), right);
   }
 
-  /// One of two words, the first if neither is there.
-  bool is_second(const char* first, const char* second)
+  /// Which of some words is there: its number, 0 if none is.
+  std::size_t one_of(std::initializer_list<const char*> words)
   {
-    const bool is_first = take_word(first), is_second = take_word(second);
-    if (is_first && is_second) fail(join("both ", first, " and ", second), "one of them");
-    return is_second;
+    std::size_t found = 0;
+    const char* before = nullptr;
+    for (const auto* word = words.begin(); word != words.end(); ++word) {
+      if (!take_word(*word)) continue;
+      if (before != nullptr) fail(join("both ", before, " and ", *word), "one of them");
+      before = *word;
+      found = static_cast<std::size_t>(word - words.begin());
+    }
+    return found;
   }
+
+  Cells shapes() { return static_cast<Cells>(one_of({"quads", "triangles", "alternating", "delaunay"})); }
 
   double number(const char* key, double otherwise)
   {
@@ -128,7 +137,7 @@ private:
 Grid grid(Pieces& p)
 {
   p.expect_cells(2, "two, say 32x24");
-  const auto cells = p.is_second("quads", "triangles") ? Cells::triangles : Cells::quads;
+  const auto cells = p.shapes();
   return {p.cells()[0], p.cells()[1], cells, p.perturbation()};
 }
 
@@ -162,7 +171,7 @@ MeshFile rectangle_of(Pieces& p)
 MeshFile cap_of(Pieces& p)
 {
   p.expect_cells(2, "two, rings x cells around, say 8x32");
-  const auto cells = p.is_second("quads", "triangles") ? Cells::triangles : Cells::quads;
+  const auto cells = p.shapes();
   const double radius = p.number("radius", 1.0), angle = p.angle("angle", 60.0);
   p.expect_all_used();
   return spherical_cap(p.cells()[0], p.cells()[1], cells, radius, angle);
@@ -183,23 +192,77 @@ MeshFile box_of(Pieces& p)
     const auto cells = grid(p);
     const Eigen::Vector2d size = p.list("size", 'x', Eigen::Vector2d(1.0, 1.0));
     const Eigen::Vector2d origin = p.list("origin", ':', Eigen::Vector2d(0.0, 0.0));
+    const Division division{p.list("ratio", ':', Eigen::Vector2d(1.0, 1.0)), p.number("skew", 0.0)};
     p.expect_all_used();
-    return box_2d(cells, size, origin);
+    return box_2d(cells, size, origin, division);
   }
   p.expect_cells(3, "two in the plane or three in space, say 8x8x4");
-  const auto volumes = p.is_second("hexes", "tets") ? Volumes::tets : Volumes::hexes;
+  const auto volumes = static_cast<Volumes>(p.one_of({"hexes", "tets"}));
   const auto perturb = p.perturbation();
   const Eigen::Vector3d size = p.list("size", 'x', Eigen::Vector3d(1.0, 1.0, 1.0));
   const Eigen::Vector3d origin = p.list("origin", ':', Eigen::Vector3d(0.0, 0.0, 0.0));
+  const Eigen::Vector3d ratio = p.list("ratio", ':', Eigen::Vector3d(1.0, 1.0, 1.0));
   p.expect_all_used();
-  return box_3d({p.cells()[0], p.cells()[1], p.cells()[2]}, volumes, size, origin, perturb);
+  return box_3d({p.cells()[0], p.cells()[1], p.cells()[2]}, volumes, size, origin, perturb, ratio);
+}
+
+Arch arch(Pieces& p)
+{
+  const Arch usual;
+  return {p.number("length", usual.length), p.number("thickness", usual.thickness),
+          p.angle("angle", usual.angle * 180.0 / std::numbers::pi)};
+}
+
+MeshFile arch_of(Pieces& p)
+{
+  const auto cells = grid(p);
+  const auto shape = arch(p);
+  p.expect_all_used();
+  return solid_arch(cells, shape);
+}
+
+MeshFile duct_arch_of(Pieces& p)
+{
+  const auto cells = grid(p);
+  const auto shape = arch(p);
+  const ArchSurroundings usual;
+  const ArchSurroundings around{p.number("height", usual.height), p.number("growth", usual.growth),
+                                p.number("largest", usual.largest), p.number("left", usual.left),
+                                p.number("right", usual.right)};
+  p.expect_all_used();
+  return duct_over_arch(cells, shape, around);
+}
+
+MeshFile box_arch_of(Pieces& p)
+{
+  const auto cells = grid(p);
+  const auto shape = arch(p);
+  const double height = p.number("height", 0.2), growth = p.number("growth", 1.04);
+  p.expect_all_used();
+  return box_over_arch(cells, shape, height, growth);
+}
+
+MeshFile bump_of(Pieces& p)
+{
+  const auto cells = grid(p);
+  const double height = p.number("height", 0.1);
+  p.expect_all_used();
+  return channel_with_bump(cells, height);
+}
+
+MeshFile cook_of(Pieces& p)
+{
+  const auto cells = grid(p);
+  p.expect_all_used();
+  return cooks_membrane(cells);
 }
 
 const std::map<std::string, MeshFile (*)(Pieces&)>& generators()
 {
-  static const std::map<std::string, MeshFile (*)(Pieces&)> all = {{"line", line_of},           {"arc", arc_of},
-                                                                   {"rectangle", rectangle_of}, {"cap", cap_of},
-                                                                   {"wing", wing_of},           {"box", box_of}};
+  static const std::map<std::string, MeshFile (*)(Pieces&)> all = {
+      {"line", line_of}, {"arc", arc_of},   {"rectangle", rectangle_of}, {"cap", cap_of},           {"wing", wing_of},
+      {"box", box_of},   {"arch", arch_of}, {"duct_arch", duct_arch_of}, {"box_arch", box_arch_of}, {"bump", bump_of},
+      {"cook", cook_of}};
   return all;
 }
 

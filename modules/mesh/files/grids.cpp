@@ -3,8 +3,11 @@
 #include "generators.hpp"
 #include "grid.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace mullion::mesh_files {
 namespace {
@@ -67,20 +70,109 @@ void add_grid_node(RawMesh& raw, const Eigen::VectorXd& x)
   raw.numbers.push_back(static_cast<std::int64_t>(raw.numbers.size()));
 }
 
-std::vector<Element> add_grid_cell(RawMesh& raw, const std::array<Index, 4>& nodes, Cells cells)
+namespace {
+
+/// Is the diagonal between the corners b and d Delaunay's choice? Where the angles across from a and c sum up to more
+/// than pi, the other one is better.
+bool is_cut_from_b_to_d(const RawMesh& raw, const std::array<Index, 4>& nodes)
+{
+  const auto x = [&](std::size_t k) {
+    return Eigen::Map<const Eigen::Vector3d>(raw.coordinates.data() + 3 * static_cast<std::size_t>(nodes[k]));
+  };
+  const auto cosine_and_sine = [](const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+    return Eigen::Vector2d(u.dot(v), u.cross(v).norm());
+  };
+  const auto at_a = cosine_and_sine(x(1) - x(0), x(3) - x(0)), at_c = cosine_and_sine(x(3) - x(2), x(1) - x(2));
+  // sin(alpha + gamma) > 0: cutting from b to d leaves alpha and gamma across the cut, and they sum up to less than pi.
+  return at_a[1] * at_c[0] + at_a[0] * at_c[1] > 0.0;
+}
+
+} // namespace
+
+std::vector<Element> add_grid_cell(RawMesh& raw, const std::array<Index, 4>& nodes, Cells cells, bool is_odd)
 {
   const auto& [a, b, c, d] = nodes;
   if (cells == Cells::quads) return {add_element(raw, Shape::quadrilateral4, nodes)};
+  const bool is_other =
+      (cells == Cells::alternating && is_odd) || (cells == Cells::delaunay && is_cut_from_b_to_d(raw, nodes));
+  if (is_other)
+    return {add_element(raw, Shape::triangle3, std::array{a, b, d}),
+            add_element(raw, Shape::triangle3, std::array{b, c, d})};
   return {add_element(raw, Shape::triangle3, std::array{a, b, c}),
           add_element(raw, Shape::triangle3, std::array{a, c, d})};
 }
 
-void add_grid_cells(RawMesh& raw, int n, int m, Cells cells)
+std::vector<Element> add_grid_cells(RawMesh& raw, int n, int m, Cells cells)
 {
   const auto node = [&](int i, int j) { return static_cast<Index>(i + (n + 1) * j); };
+  std::vector<Element> added;
   for (int j = 0; j < m; ++j)
     for (int i = 0; i < n; ++i)
-      add_grid_cell(raw, {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)}, cells);
+      for (const auto& element : add_grid_cell(raw, {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)},
+                                               cells, (i + j) % 2 == 1))
+        added.push_back(element);
+  return added;
+}
+
+std::vector<Eigen::VectorXd> unit_grid_with_fixed_sides(const std::vector<int>& n, const Perturbation& perturb)
+{
+  auto nodes = unit_grid(n, perturb);
+  const auto in_place = unit_grid(n, {});
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if ((in_place[i].array() == 0.0).any() || (in_place[i].array() == 1.0).any()) nodes[i] = in_place[i];
+  return nodes;
+}
+
+double graded(double s, int n, double ratio)
+{
+  if (n == 1 || ratio == 1.0) return s;
+  const double log_factor = std::log(ratio) / (n - 1);
+  return std::expm1(s * n * log_factor) / std::expm1(n * log_factor);
+}
+
+namespace {
+
+/// Every corner of every element in the plane turns to the left.
+void check_turns(const RawMesh& raw)
+{
+  for (const auto shape : {Shape::triangle3, Shape::quadrilateral4}) {
+    const auto n = static_cast<std::size_t>(facts(shape).n_nodes);
+    const auto& nodes = raw.connectivity[static_cast<std::size_t>(shape)];
+    for (std::size_t first = 0; first < nodes.size(); first += n)
+      for (std::size_t k = 0; k < n; ++k) {
+        const auto x = [&](std::size_t corner) {
+          return Eigen::Map<const Eigen::Vector2d>(raw.coordinates.data() +
+                                                   3 * static_cast<std::size_t>(nodes[first + corner % n]));
+        };
+        const Eigen::Vector2d u = x(k + 1) - x(k), v = x(k + n - 1) - x(k);
+        if (!(u[0] * v[1] - u[1] * v[0] > 0.0))
+          throw FileError(join("cell ", first / n, " turns over near (", x(k)[0], ", ", x(k)[1],
+                               "); take a smaller perturb or skew, or sizes that leave it room"));
+      }
+  }
+}
+
+} // namespace
+
+MeshFile domain(const Grid& grid, const std::vector<Eigen::VectorXd>& st,
+                const std::function<Eigen::Vector2d(double s, double t)>& function, const SideNames& names)
+{
+  const int n = grid.n, m = grid.m;
+  RawMesh raw;
+  for (const auto& at : st) add_grid_node(raw, function(at[0], at[1]));
+  for (const auto& cell : add_grid_cells(raw, n, m, grid.cells)) add_to_group(raw, "volume", cell);
+  check_turns(raw);
+  const auto node = [&](int i, int j) { return static_cast<Index>(i + (n + 1) * j); };
+  // Counterclockwise, so that the normal, to the right of a line, points outward.
+  const auto side = [&](const std::string& name, Index a, Index b) {
+    add_to_group(raw, name, add_element(raw, Shape::line2, std::array{a, b}));
+  };
+  for (int j = 0; j < m; ++j) side(names.left, node(0, j + 1), node(0, j));
+  for (int j = 0; j < m; ++j) side(names.right, node(n, j), node(n, j + 1));
+  for (int i = 0; i < n; ++i)
+    side(names.bottom[names.bottom.size() == 1 ? 0 : static_cast<std::size_t>(i)], node(i, 0), node(i + 1, 0));
+  for (int i = 0; i < n; ++i) side(names.top, node(i + 1, m), node(i, m));
+  return finished(std::move(raw), 2);
 }
 
 namespace {
@@ -92,35 +184,30 @@ void check_box(const Eigen::VectorXd& size)
       throw FileError(join("a box with a side of ", length, " m; sides are above 0"));
 }
 
-void add_box_nodes(RawMesh& raw, const std::vector<int>& n, const Eigen::VectorXd& size, const Eigen::VectorXd& origin,
-                   const Perturbation& perturb)
+void check_ratio(const Eigen::VectorXd& ratio)
 {
-  for (const auto& at : unit_grid(n, perturb)) add_grid_node(raw, origin + at.cwiseProduct(size));
+  for (const double r : ratio)
+    if (!(r > 0.0) || !std::isfinite(r))
+      throw FileError(join("the ratio ", r, " of the last cell's size to the first's; it is above 0"));
 }
 
 } // namespace
 
-MeshFile box_2d(const Grid& grid, const Eigen::Vector2d& size, const Eigen::Vector2d& origin)
+MeshFile box_2d(const Grid& grid, const Eigen::Vector2d& size, const Eigen::Vector2d& origin, const Division& division)
 {
   check_box(size);
-  const int n = grid.n, m = grid.m;
-  RawMesh raw;
-  add_box_nodes(raw, {n, m}, size, origin, grid.perturb);
-  const auto node = [&](int i, int j) { return static_cast<Index>(i + (n + 1) * j); };
-  for (int j = 0; j < m; ++j)
-    for (int i = 0; i < n; ++i)
-      for (const auto& cell :
-           add_grid_cell(raw, {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)}, grid.cells))
-        add_to_group(raw, "volume", cell);
-  // Counterclockwise, so that the normal, to the right of a line, points outward.
-  const auto side = [&](const char* name, Index a, Index b) {
-    add_to_group(raw, name, add_element(raw, Shape::line2, std::array{a, b}));
-  };
-  for (int j = 0; j < m; ++j) side("x_min", node(0, j + 1), node(0, j));
-  for (int j = 0; j < m; ++j) side("x_max", node(n, j), node(n, j + 1));
-  for (int i = 0; i < n; ++i) side("y_min", node(i, 0), node(i + 1, 0));
-  for (int i = 0; i < n; ++i) side("y_max", node(i + 1, m), node(i, m));
-  return finished(std::move(raw), 2);
+  check_ratio(division.ratio);
+  const auto wave = [](double at) { return std::sin(2.0 * std::numbers::pi * at); };
+  return domain(grid, unit_grid({grid.n, grid.m}, grid.perturb),
+                [&](double s, double t) -> Eigen::Vector2d {
+                  const Eigen::Vector2d at(graded(s, grid.n, division.ratio[0]), graded(t, grid.m, division.ratio[1]));
+                  const Eigen::Vector2d x = origin + at.cwiseProduct(size);
+                  const bool is_on_side =
+                      s == 0.0 || s == 1.0 || t == 0.0 || t == 1.0; // where a wave is 0 but for round-off
+                  if (division.skew == 0.0 || is_on_side) return x;
+                  return x + Eigen::Vector2d::Constant(division.skew * wave(at[0]) * wave(at[1]));
+                },
+                {"x_min", "x_max", "y_max", {"y_min"}});
 }
 
 namespace {
@@ -148,11 +235,15 @@ void add_side(RawMesh& raw, const char* name, const Corners& c, const std::array
 } // namespace
 
 MeshFile box_3d(const Eigen::Vector3i& n, Volumes volumes, const Eigen::Vector3d& size, const Eigen::Vector3d& origin,
-                const Perturbation& perturb)
+                const Perturbation& perturb, const Eigen::Vector3d& ratio)
 {
   check_box(size);
+  check_ratio(ratio);
   RawMesh raw;
-  add_box_nodes(raw, {n[0], n[1], n[2]}, size, origin, perturb);
+  for (auto at : unit_grid({n[0], n[1], n[2]}, perturb)) {
+    for (int k = 0; k < 3; ++k) at[k] = graded(at[k], n[k], ratio[k]);
+    add_grid_node(raw, origin + at.cwiseProduct(size));
+  }
   const auto corners = [&](int i, int j, int k) {
     Corners c;
     for (int corner = 0; corner < 8; ++corner)

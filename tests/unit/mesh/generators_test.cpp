@@ -164,7 +164,7 @@ TEST_CASE("texts of case files give the meshes of the functions")
 TEST_CASE("errors in a generator's text show it and say what would be right")
 {
   CHECK(complaint("rectangle:3x3,triangels") == "mesh \"rectangle:3x3,triangels\": the option \"triangels\"; it takes "
-                                                "origin, perturb, quads, seed, size, triangles");
+                                                "alternating, delaunay, origin, perturb, quads, seed, size, triangles");
   CHECK(complaint("rectangle:3") == "mesh \"rectangle:3\": 1 numbers of cells; two, say 32x24");
   CHECK(complaint("rectangle:3x0") ==
         "mesh \"rectangle:3x0\": \"0\" as a number of cells; integers from 1 on, say 32x24");
@@ -177,7 +177,8 @@ TEST_CASE("errors in a generator's text show it and say what would be right")
   CHECK(complaint("box:3x3,seed=1,seed=2") == "mesh \"box:3x3,seed=1,seed=2\": \"seed\" twice; each option once");
   CHECK(complaint("box:3x3,perturb=nan").find("numbers, with : between them") != std::string::npos);
   CHECK(complaint("rectangle:40000x40000").find("up to 2e+07 are generated") != std::string::npos);
-  CHECK(complaint("sphere:3").find("arc, box, cap, line, rectangle, wing") != std::string::npos);
+  CHECK(complaint("sphere:3").find("arc, arch, box, box_arch, bump, cap, cook, duct_arch, line, rectangle, wing") !=
+        std::string::npos);
 }
 
 TEST_CASE("an interface lies in a space of one dimension more than its elements")
