@@ -101,7 +101,7 @@ double first_value(const CsvColumn& column)
 std::string quantity_of(const std::string& column)
 {
   auto name = column;
-  for (const std::string statistic : {".mean", ".max"})
+  for (const std::string statistic : {".mean", ".max", ".deviation"})
     if (name.ends_with(statistic)) name.resize(name.size() - statistic.size());
   if (const auto dot = name.rfind('.'); dot != std::string::npos) name.erase(0, dot + 1);
   if (const auto pane = name.find('['); pane != std::string::npos) name.erase(pane, name.find(']') + 1 - pane);

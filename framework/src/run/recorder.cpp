@@ -84,8 +84,8 @@ void Recorder::begin(Session& session)
 
 void Recorder::choose_columns()
 {
-  // The interface windows, value by value where there is one entity, mean and largest magnitude where there are
-  // many; and every output on a pane (energies, work, …) of any module.
+  // The interface windows, value by value where there is one entity, mean, largest magnitude and standard deviation
+  // where there are many; and every output on a pane (energies, work, …) of any module.
   std::vector<std::string> interface_windows;
   for (const auto& pair : case_.interfaces)
     for (auto path : {pair.fluid, pair.structure}) {
@@ -116,6 +116,7 @@ void Recorder::choose_columns()
         } else {
           columns_.push_back({column + ".mean", {w, f}, static_cast<int>(c), Statistic::mean});
           columns_.push_back({column + ".max", {w, f}, static_cast<int>(c), Statistic::largest});
+          columns_.push_back({column + ".deviation", {w, f}, static_cast<int>(c), Statistic::deviation});
         }
       }
     }
@@ -216,7 +217,15 @@ double Recorder::measure(const Column& column) const
     sum += values(column.component, i);
     largest = std::max(largest, std::abs(values(column.component, i)));
   }
-  return column.statistic == Statistic::mean ? sum / static_cast<double>(values.cols()) : largest;
+  if (column.statistic == Statistic::largest) return largest;
+  const double n = static_cast<double>(values.cols()), mean = sum / n;
+  if (column.statistic == Statistic::mean) return mean;
+  double squares = 0.0;
+  for (Eigen::Index i = 0; i < values.cols(); ++i) {
+    const double difference = values(column.component, i) - mean;
+    squares += difference * difference;
+  }
+  return std::sqrt(squares / n);
 }
 
 void Recorder::record(const TimeStep& step)

@@ -51,7 +51,7 @@ public:
   void summarise_interface();
 
 private:
-  enum class Statistic { value, mean, largest };
+  enum class Statistic { value, mean, largest, deviation };
   struct Column {
     std::string name;
     FieldAddress at;
