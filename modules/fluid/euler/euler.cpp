@@ -1,6 +1,7 @@
 #include "euler.hpp"
 
 #include "mesh_input.hpp"
+#include "saved_state.hpp"
 
 #include "files/file_error.hpp"
 #include "files/read.hpp"
@@ -309,13 +310,32 @@ std::function<Values<2>(const Vec<2>&, double)> Euler::state_function(const char
 
 void Euler::set_first_state(const MeshSource<2>& source, double t)
 {
-  const auto state =
-      state_function("initial", options_.initial_density, options_.initial_velocity, options_.initial_pressure);
   const auto& geometry = solver_->geometry();
-  set_amounts<2>(
-      source, solver_->mesh(), scheme_.gas, geometry.volume, geometry.centroid,
-      [&](const Vec<2>& x) { return state(x, t); },
-      options_.initial_average == "centroid" ? Average::centroid : Average::quadrature, amounts_);
+  const auto& order = solver_->mesh().order;
+  if (options_.initial_file.empty()) {
+    const auto state =
+        state_function("initial", options_.initial_density, options_.initial_velocity, options_.initial_pressure);
+    set_amounts<2>(
+        source, solver_->mesh(), scheme_.gas, geometry.volume, geometry.centroid,
+        [&](const Vec<2>& x) { return state(x, t); },
+        options_.initial_average == "centroid" ? Average::centroid : Average::quadrature, amounts_);
+  } else {
+    MULLION_REQUIRE(options_.initial_density.empty() && options_.initial_velocity.empty() &&
+                        options_.initial_pressure.empty(),
+                    Errc::config, "initial_file and functions for the first state are given; give one of them");
+    std::vector<Vec<2>> centroid(order.size()); // as the blocks count
+    std::vector<double> volume(order.size());
+    for (std::size_t c = 0; c < order.size(); ++c) {
+      centroid[static_cast<std::size_t>(order[c])] = geometry.centroid[c];
+      volume[static_cast<std::size_t>(order[c])] = geometry.volume[c];
+    }
+    try {
+      const auto saved = saved_state(options_.initial_file, scheme_.gas, source.nodes, centroid, volume);
+      for (std::size_t c = 0; c < order.size(); ++c) amounts_[c] = saved[static_cast<std::size_t>(order[c])];
+    } catch (const SavedStateError& error) {
+      throw Error(Errc::config, std::string("initial_file: ") + error.what());
+    }
+  }
   write_amounts();
 }
 

@@ -82,7 +82,9 @@ public:
           parameter("initial_pressure", &O::initial_pressure, "", "function in Pa; empty: the free stream's"),
           parameter("initial_average", &O::initial_average, "",
                     "value of a cell: at its centroid, or the mean over it by quadrature",
-                    one_of("centroid", "quadrature"))};
+                    one_of("centroid", "quadrature")),
+          parameter("initial_file", &O::initial_file, "",
+                    "first state from a table (.csv: x,y,rho,u,v,p) or from a file of results (.h5)")};
     }
     static constexpr auto scheme_table()
     {
