@@ -72,7 +72,7 @@ Modes lowest_modes(const System& system, Eigen::Index n_modes)
     const Eigen::VectorXd inertia = mass * shape;
     const double largest = shape.cwiseAbs().maxCoeff();
     Eigen::Index first = 0;
-    while (std::abs(shape[first]) < (1.0 - 1e-6) * largest) ++first;
+    while (std::abs(shape[first]) < (1.0 - 1e-4) * largest) ++first;
     const double scale = (shape[first] < 0.0 ? -1.0 : 1.0) / std::sqrt(shape.dot(inertia));
     for (std::size_t i = 0; i < system.free.size(); ++i)
       modes.shapes(system.free[i], k) = scale * shape[static_cast<Eigen::Index>(i)];
