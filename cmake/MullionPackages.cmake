@@ -10,6 +10,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(pugixml REQUIRED)   # mesh files
 find_package(ZLIB REQUIRED)      # mesh files
 find_package(muparser REQUIRED)  # expressions in parameters of modules
+find_package(Spectra REQUIRED)   # eigenvalues, for modal analysis
 if(MULLION_TESTS)
   find_package(doctest REQUIRED)
 endif()

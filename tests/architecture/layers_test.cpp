@@ -127,7 +127,8 @@ TEST_CASE("a module knows the SDK, its kernels and Eigen")
   for (const auto& folder : folders)
     if (starts_with(folder, "modules/"))
       check_includes(sources_under(folder), [](const auto& file, const Include& i) {
-        return is_beside(file, i) || is_shared_kernel(i) || is_shared_code(i) || is_of(i, {"mullion/sdk", "Eigen"});
+        return is_beside(file, i) || is_shared_kernel(i) || is_shared_code(i) ||
+               is_of(i, {"mullion/sdk", "Eigen", "Spectra"});
       });
 }
 
@@ -149,7 +150,7 @@ TEST_CASE("a kernel knows other kernels and Eigen: neither windows nor case file
     if (const auto kernels = kernels_of(folder); !kernels.empty()) {
       is_any = true;
       check_includes(kernels, [](const auto& file, const Include& i) {
-        return is_beside(file, i) || is_shared_kernel(i) || is_of(i, {"Eigen"});
+        return is_beside(file, i) || is_shared_kernel(i) || is_of(i, {"Eigen", "Spectra"}); // Spectra: Eigen's kin
       });
     }
   CHECK(is_any);
