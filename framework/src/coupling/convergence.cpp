@@ -25,13 +25,12 @@ void Convergence::compare(std::size_t field, int iteration, const Values& now, c
   last.size = now.norm();
   const bool is_finite = std::isfinite(last.change) && std::isfinite(last.size);
   const double allowed = tolerance.absolute + tolerance.relative * last.size;
-  if (is_finite && !last.has_first && last.change > 0.0) { // from rest a field's first change may be none
+  if (is_finite && !last.has_first && last.change > allowed) { // from rest a field's first change may be round-off
     last.first_change = last.change;
-    last.least_change = std::max(last.change, allowed); // a first guess may hit a field to round-off
     last.has_first = true;
   }
   last.has_passed = is_finite && last.change <= allowed;
-  const bool has_grown = last.has_first && !last.has_passed && last.change > largest_growth * last.least_change;
+  const bool has_grown = last.has_first && !last.has_passed && last.change > largest_growth * last.first_change;
   if (is_finite && !has_grown) return;
   Eigen::Index component = 0, entity = 0;
   double largest = -1.0;

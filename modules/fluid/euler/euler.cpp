@@ -101,7 +101,7 @@ std::vector<FieldSpec> Euler::fields()
       output("wall", "pressure_gradient", element, scalar, "Pa/m", "dp/dn_f at the end of the step"),
       output("wall", "sound_speed", element, scalar, "m/s", "at the end of the step"),
       output("wall", "wall_spacing", element, scalar, "m", "dx_n: twice the distance of the cell's centroid"),
-      state("wall", "initial_pressure_gradient", element, scalar, "Pa/m", "pressure_gradient of the first state"),
+      output("wall", "normal", element, vector, "1", "n_f, of length 1, at the end of the step"),
       output("wall", "nodal_traction", node, vector, "Pa", "mean of the adjacent faces' traction, by length"),
       output("wall", "nodal_traction_mean", node, vector, "Pa", "the same of traction_mean"),
       output("wall", "load", node, vector, "N", "half of the adjacent faces' force, per metre of depth").extensive(),
@@ -162,11 +162,14 @@ void Euler::define(const TimeStep& initial)
   for (Eigen::Index i = 0; i < n_wall_nodes; ++i) volume_node(0, i) = wall_nodes[static_cast<std::size_t>(i)];
 
   coordinates_.now() = source.nodes;
+  displace_mesh();
   first_residual_.now()(0, 0) = 0.0;
-  set_first_state(source, initial.end);
+  auto displaced = source;
+  displaced.nodes = coordinates_.values();
+  set_first_state(displaced, initial.end);
+  settle(initial.end);
   StepSums sums;
   write_outputs(initial, sums, NodeArray::Zero(2, source.nodes.cols()));
-  initial_pressure_gradient_.now() = pressure_gradient_.values();
 }
 
 void Euler::attach()
@@ -194,7 +197,7 @@ void Euler::look_up()
   traction_mean_ = field("wall", "traction_mean");
   wall_pressure_ = field("wall", "pressure");
   pressure_gradient_ = field("wall", "pressure_gradient");
-  initial_pressure_gradient_ = field("wall", "initial_pressure_gradient");
+  normal_ = field("wall", "normal");
   sound_speed_ = field("wall", "sound_speed");
   wall_spacing_ = field("wall", "wall_spacing");
   nodal_traction_ = field("wall", "nodal_traction");
@@ -339,6 +342,23 @@ void Euler::set_first_state(const MeshSource<2>& source, double t)
   write_amounts();
 }
 
+void Euler::displace_mesh()
+{
+  if (options_.initial_mesh_displacement.empty()) return;
+  using expressions::Along, expressions::VectorExpression;
+  auto nodes = coordinates_.now();
+  try {
+    const VectorExpression displacement(options_.initial_mesh_displacement, Along::components, Eigen::Index{2});
+    for (Eigen::Index i = 0; i < nodes.cols(); ++i) {
+      const Eigen::VectorXd x = nodes.col(i);
+      nodes.col(i) += displacement(x, Eigen::Vector2d::Zero(), 0.0);
+    }
+  } catch (const expressions::ExpressionError& error) {
+    throw Error(Errc::config, std::string("initial_mesh_displacement: ") + error.what());
+  }
+  place(nodes);
+}
+
 void Euler::read_amounts(bool committed)
 {
   const auto mass = committed ? mass_.committed() : mass_.values();
@@ -409,6 +429,22 @@ void Euler::step(const TimeStep& step)
     for (Eigen::Index i = 0; i < w.cols(); ++i) v_mean_.col(volume_node(0, i)) = w.col(i);
   }
   write_outputs(step, sums, v_mean_);
+}
+
+void Euler::settle(double t)
+{
+  if (options_.steady_iterations == 0) return;
+  const NodeArray nodes = coordinates_.values();
+  double first = 0.0;
+  for (int i = 0; i < options_.steady_iterations; ++i) {
+    solver_->set_order(i < options_.first_order_iterations ? 1 : options_.order);
+    require(solver_->iterate(amounts_, t, options_.cfl, nodes), nodes, 0.0);
+    if (!(first > 0.0)) first = solver_->residual();
+  }
+  solver_->set_order(options_.order);
+  log().info("{} iterations towards a steady flow left {:.3e} of the first residual", options_.steady_iterations,
+             first > 0.0 ? solver_->residual() / first : 0.0);
+  write_amounts();
 }
 
 void Euler::iterate(const TimeStep& step, const NodeArray& nodes, StepSums& sums)
@@ -511,9 +547,9 @@ void Euler::write_outputs(const TimeStep&, const StepSums& sums, const NodeArray
 
   const auto faces = wall_faces<2>(mesh, scheme_, amounts_, nodes, wall_velocity, wall_faces_);
   auto traction = traction_.now(), traction_mean = traction_mean_.now(), wall_pressure = wall_pressure_.now(),
-       gradient = pressure_gradient_.now(), sound = sound_speed_.now(), spacing = wall_spacing_.now(),
-       nodal = nodal_traction_.now(), nodal_mean = nodal_traction_mean_.now(), load = load_.now(),
-       load_mean = load_mean_.now();
+       normal = normal_.now(), gradient = pressure_gradient_.now(), sound = sound_speed_.now(),
+       spacing = wall_spacing_.now(), nodal = nodal_traction_.now(), nodal_mean = nodal_traction_mean_.now(),
+       load = load_.now(), load_mean = load_mean_.now();
   nodal.setZero();
   nodal_mean.setZero();
   load.setZero();
@@ -532,6 +568,7 @@ void Euler::write_outputs(const TimeStep&, const StepSums& sums, const NodeArray
     traction.col(e) = (face.pressure - options_.reference_pressure) * n;
     traction_mean.col(e) = (mean - options_.reference_pressure) * n;
     wall_pressure(0, e) = face.pressure;
+    normal.col(e) = n;
     gradient(0, e) = options_.gradient == "cell" ? face.cell_gradient : face.gradient;
     sound(0, e) = face.sound_speed;
     spacing(0, e) = 2.0 * face.distance;

@@ -27,13 +27,14 @@ public:
     double total_pressure = 0.0, total_temperature = 0.0, gas_constant = 287.05, outflow_pressure = 0.0;
     std::string prescribed_density, prescribed_velocity, prescribed_pressure;
     std::string initial_density, initial_velocity, initial_pressure, initial_average = "centroid", initial_file;
+    std::string initial_mesh_displacement;
     std::string flux = "hllc", limiter = "none", integrator = "jameson";
     int order = 2;
     double limiter_k = 5.0, limiter_length = 1.0;
     std::string time_stepping = "global";
     int substeps = 1;
     double cfl_warn = 0.0, cfl_max = 0.0, cfl = 1.2;
-    int first_order_iterations = 0, iterations_per_step = 1;
+    int steady_iterations = 0, first_order_iterations = 0, iterations_per_step = 1;
     std::string gradient = "second_order", wall_velocity = "end";
     int threads = 1;
     double reference_pressure = 0.0;
@@ -80,6 +81,8 @@ public:
           parameter("initial_velocity", &O::initial_velocity, "",
                     "functions \"u; v\" in m/s; empty: the free stream's"),
           parameter("initial_pressure", &O::initial_pressure, "", "function in Pa; empty: the free stream's"),
+          parameter("initial_mesh_displacement", &O::initial_mesh_displacement, "",
+                    "functions \"dx; dy\" of x, y in m: where the mesh stands at first, from where it was made"),
           parameter("initial_average", &O::initial_average, "",
                     "value of a cell: at its centroid, or the mean over it by quadrature",
                     one_of("centroid", "quadrature")),
@@ -106,9 +109,12 @@ public:
                     "Courant number from which there is a warning; 0: 1.25, with triangles 0.85", at_least(0.0)),
           parameter("cfl_max", &O::cfl_max, "1",
                     "Courant number beyond which the run ends; 0: 1.35, with triangles 0.9", at_least(0.0)),
-          parameter("cfl", &O::cfl, "1", "time_stepping = local: Courant number of each cell", above(0.0)),
+          parameter("cfl", &O::cfl, "1", "local time steps: Courant number of each cell", above(0.0)),
+          parameter("steady_iterations", &O::steady_iterations, "1",
+                    "so many with local time steps before the run, on the mesh at rest: it starts from a steady flow",
+                    at_least(0)),
           parameter("first_order_iterations", &O::first_order_iterations, "1",
-                    "time_stepping = local: so many first, before the second order", at_least(0)),
+                    "local time steps: so many of the iterations first, before the second order", at_least(0)),
           parameter("iterations_per_step", &O::iterations_per_step, "1", "time_stepping = local: of the step",
                     at_least(1)),
           parameter("gradient", &O::gradient, "",
@@ -156,6 +162,8 @@ private:
                                                                                const std::string& density,
                                                                                const std::string& velocity,
                                                                                const std::string& pressure) const;
+  void displace_mesh();
+  void settle(double t); ///< towards a steady flow, before the first step
   void set_first_state(const MeshSource<2>& source, double t);
   void read_amounts(bool committed);
   void write_amounts();
@@ -181,7 +189,7 @@ private:
 
   Field coordinates_, mass_, momentum_, energy_, first_residual_;
   Field density_, velocity_, pressure_, mach_, total_mass_, total_energy_, residual_, max_cfl_;
-  Field traction_, traction_mean_, pressure_gradient_, initial_pressure_gradient_, sound_speed_, wall_spacing_;
+  Field traction_, traction_mean_, pressure_gradient_, normal_, sound_speed_, wall_spacing_;
   Field wall_pressure_, nodal_traction_, nodal_traction_mean_, load_, load_mean_, work_, impulse_, force_;
   Input node_velocity_, evaluation_velocity_;
 };

@@ -47,7 +47,6 @@ public:
 private:
   struct Last {
     double first_change = 0.0, change = 0.0, size = 0.0;
-    double least_change = 0.0; ///< that growth is measured by: the first one, or what would have passed
     bool has_first = false, has_passed = false;
   };
   std::vector<Last> fields_;
