@@ -84,20 +84,27 @@ void run_gnuplot(const TemporaryFolder& folder)
 
 } // namespace
 
-std::vector<Drawing> draw(const std::vector<Plot>& plots)
+std::vector<Drawing> draw(const std::vector<Figure>& figures)
 {
-  if (plots.empty()) return {};
+  if (figures.empty()) return {};
   const TemporaryFolder folder;
   std::string script;
-  for (const auto& plot : plots) {
-    write(folder / (plot.name + ".dat"), plot_data(plot));
-    script += plot_script(plot);
-  }
+  std::vector<std::string> names;
+  for (const auto& figure : figures)
+    std::visit(
+        [&](const auto& f) {
+          write(folder / (f.name + ".dat"), plot_data(f));
+          script += plot_script(f);
+          names.push_back(f.name);
+        },
+        figure);
   write(folder / "plots.gp", script);
   run_gnuplot(folder);
   std::vector<Drawing> drawings;
-  for (const auto& plot : plots)
-    drawings.push_back({io::read_text(folder / (plot.name + ".svg")), io::read_text(folder / (plot.name + ".png"))});
+  for (const auto& name : names) {
+    const auto svg = folder / (name + ".svg");
+    drawings.push_back({fs::exists(svg) ? io::read_text(svg) : "", io::read_text(folder / (name + ".png"))});
+  }
   return drawings;
 }
 
