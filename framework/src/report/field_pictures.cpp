@@ -177,7 +177,7 @@ void add_picture(Page& page, Picture picture)
   }
   const auto say = [&](const std::string& text) { picture.caption += (picture.caption.empty() ? "" : " ") + text; };
   if (const auto n = picture.cells.size() - n_drawn; n > 0)
-    say(fmt::format("{} cells are not finite and left out.", n));
+    say(n == 1 ? "1 cell is not finite and left out." : fmt::format("{} cells are not finite and left out.", n));
   if (n_drawn > max_svg_cells) say(fmt::format("{} cells, all drawn; too many for an SVG.", n_drawn));
   page.add(std::move(picture));
 }
@@ -213,7 +213,7 @@ Picture displacement_picture(const Moved& moved, double factor)
   picture.title = fmt::format("{}: displacement at {}", moved.window.name, moved.time);
   if (factor != 1.0) picture.title += fmt::format(", drawn {:g} times as large", factor);
   picture.label = "displacement [m]";
-  picture.caption = "Of each cell the mean of its nodes' magnitudes. Dashed: the boundary before it moved.";
+  picture.caption = "Of each cell the mean of its nodes' magnitudes. Orange: the boundary before it moved.";
   for (std::size_t p = 0; p < moved.window.panes.size(); ++p) {
     const auto& pane = moved.window.panes[p];
     std::vector<Point> drawn;

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 namespace mullion::report {
 namespace {
@@ -48,6 +49,13 @@ void write(const fs::path& path, const std::string& text)
   std::ofstream file(path, std::ios::binary);
   file << text << std::flush;
   MULLION_REQUIRE(file.good(), Errc::io, "cannot write {}: is that disk full?", path.string());
+}
+
+/// gnuplot's SVG without hairs of the background between the polygons: each of their edges is smoothed by itself.
+std::string with_crisp_polygons(std::string svg)
+{
+  const auto at = svg.find("<defs>");
+  return at == std::string::npos ? svg : svg.insert(at, "<style>polygon { shape-rendering: crispEdges; }</style>\n");
 }
 
 /// Run gnuplot in the folder; what it says goes to a file there.
@@ -101,9 +109,11 @@ std::vector<Drawing> draw(const std::vector<Figure>& figures)
   write(folder / "plots.gp", script);
   run_gnuplot(folder);
   std::vector<Drawing> drawings;
-  for (const auto& name : names) {
-    const auto svg = folder / (name + ".svg");
-    drawings.push_back({fs::exists(svg) ? io::read_text(svg) : "", io::read_text(folder / (name + ".png"))});
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const auto file = folder / (names[i] + ".svg");
+    auto svg = fs::exists(file) ? io::read_text(file) : std::string();
+    if (std::holds_alternative<Picture>(figures[i])) svg = with_crisp_polygons(std::move(svg));
+    drawings.push_back({std::move(svg), io::read_text(folder / (names[i] + ".png"))});
   }
   return drawings;
 }

@@ -14,7 +14,7 @@ namespace mullion::report {
 namespace {
 
 // [px] of the whole, and of what stands around the drawing: numbers and titles of the axes, the colour bar below
-constexpr double width = 900, left = 85, right = 30, top = 15, below_axis = 55, bar_height = 16, below_bar = 50;
+constexpr double width = 900, left = 85, right = 30, top = 15, below_axis = 68, bar_height = 16, below_bar = 62;
 constexpr double smallest_height = 60, largest_height = 700; // [px] of the drawing
 constexpr double largest_value = 1e300;                      // beyond it the margins of an axis would overflow
 
@@ -122,9 +122,8 @@ std::string plot_script(const Picture& picture)
                         left / width, below_bar / whole, 1.0 - (left + right) / width, bar_height / whole);
   auto plot = fmt::format("plot {} index 0 using 1:2:3 with polygons fillcolor palette", file(".dat"));
   if (!picture.outline.empty())
-    plot += fmt::format(", \\\n     {} index 1 using 1:2 with lines linecolor rgb '#D55E00' linewidth 1.2 "
-                        "dashtype (8,5)",
-                        file(".dat"));
+    plot +=
+        fmt::format(", \\\n     {} index 1 using 1:2 with lines linecolor rgb '#D55E00' linewidth 1.2", file(".dat"));
   if (values.size() <= max_svg_cells)
     script += fmt::format("set terminal svg noenhanced size {},{} font 'sans-serif,13' rounded background 'white'\n"
                           "set output {}\n{}\n",

@@ -31,7 +31,7 @@ struct Picture {
   std::string caption; ///< below it on the page; may be empty
   std::string label;   ///< of the colour bar, with the unit: "pressure [Pa]"
   std::vector<Cell> cells;
-  std::vector<Segment> outline; ///< dashed over the cells, or none: the boundary of the undeformed mesh
+  std::vector<Segment> outline; ///< orange over the cells, or none: the boundary of the undeformed mesh
 };
 
 /// Pictures of more cells have no SVG: it would take a browser longer to show than most readers wait.
