@@ -9,14 +9,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace mullion::report {
 namespace {
 
 // [px] of the whole, and of what stands around the drawing: numbers and titles of the axes, the colour bar below
-constexpr double width = 900, left = 85, right = 30, top = 15, below_axis = 68, bar_height = 16, below_bar = 62;
-constexpr double smallest_height = 60, largest_height = 700; // [px] of the drawing
-constexpr double largest_value = 1e300;                      // beyond it the margins of an axis would overflow
+constexpr double width = 900, left = 85, right = 45, top = 15, below_axis = 76, bar_height = 16, below_bar = 76;
+constexpr double smallest_side = 60, largest_height = 700; // [px] of the drawing
+constexpr double largest_value = 1e300;                    // beyond it the margins of an axis would overflow
 
 constexpr const char* viridis = "0 '#440154', 1 '#472d7b', 2 '#3b528b', 3 '#2c728e', 4 '#21918c', 5 '#28ae80', "
                                 "6 '#5ec962', 7 '#addc30', 8 '#fde725'";
@@ -61,6 +62,24 @@ Box view(const Picture& picture)
   return box;
 }
 
+/// How large the box is drawn [px across, px down].
+std::pair<double, double> size_of(const Box& box)
+{
+  const double room = width - left - right, ratio = box.y.span() / box.x.span();
+  const double down = std::clamp(room * ratio, smallest_side, largest_height);
+  return {std::clamp(down / ratio, smallest_side, room), down};
+}
+
+/// The distance between numbers at an axis: 1, 2 or 5 times a power of ten, such that at most `n` of them, or one, fit.
+double tick_step(double span, double n)
+{
+  const double wanted = span / std::max(n, 1.0);
+  const double decade = std::pow(10.0, std::floor(std::log10(wanted)));
+  for (const double digit : {1.0, 2.0, 5.0})
+    if (digit * decade >= wanted) return digit * decade;
+  return 10.0 * decade;
+}
+
 bool is_finite(const Point& point)
 {
   return std::isfinite(point.x) && std::isfinite(point.y) && std::abs(point.x) < largest_value &&
@@ -101,22 +120,26 @@ std::string plot_script(const Picture& picture)
   MULLION_ASSERT(!values.empty(), "picture {} has no cell that can be drawn", picture.name);
   const auto file = [&](const char* ending) { return quote(picture.name + ending); };
   const auto box = view(picture);
-  const double drawing =
-      std::clamp((width - left - right) * box.y.span() / box.x.span(), smallest_height, largest_height);
-  const double whole = std::round(top + drawing + below_axis + bar_height + below_bar);
+  const auto [across, down] = size_of(box);
+  const double whole = std::round(top + down + below_axis + bar_height + below_bar);
 
   std::string script = "reset\nset encoding utf8\nunset key\nset border 3\nset tics nomirror out\n";
   script += fmt::format("set palette defined ({})\nset style fill solid noborder\n", viridis);
   script += fmt::format("set xlabel 'x [m]'\nset ylabel 'y [m]'\nset xrange [{}:{}]\nset yrange [{}:{}]\n", box.x.low,
                         box.x.high, box.y.low, box.y.high);
-  // a low drawing has room for two or three numbers beside it
-  if (drawing < 150) script += fmt::format("set ytics {}\n", std::pow(10.0, std::floor(std::log10(box.y.span()))));
-  script +=
-      fmt::format("set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\n", left / width, 1.0 - right / width);
+  script += fmt::format("set xtics {}\nset ytics {}\n", tick_step(box.x.span(), across / 90), // [px] a number needs
+                        tick_step(box.y.span(), down / 45));
+  const double begin = left + 0.5 * (width - left - right - across); // in the middle, if it is narrow
+  script += fmt::format("set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\n", begin / width,
+                        (begin + across) / width);
   script += fmt::format("set tmargin at screen {:.4f}\nset bmargin at screen {:.4f}\nset size ratio -1\n",
                         1.0 - top / whole, (below_bar + bar_height + below_axis) / whole);
   script += fmt::format("set cbrange {}\nset format cb '{}'\nset cblabel {}\n", axis_range(values, false, 0.0),
                         axis_format(values), quote(shorten(picture.label, 80)));
+  const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
+  const double span = *highest - *lowest; // if it is next to nothing, axis_range() has chosen another one
+  if (span > 1e-9 * std::max(std::abs(*lowest), std::abs(*highest)))
+    script += fmt::format("set cbtics {}\n", tick_step(span, 6)); // so many numbers fit, long ones too
   script += fmt::format("set colorbox horizontal user origin screen {:.4f}, screen {:.4f} size screen {:.4f}, "
                         "screen {:.4f}\n",
                         left / width, below_bar / whole, 1.0 - (left + right) / width, bar_height / whole);

@@ -47,8 +47,8 @@ TEST_CASE("the script of a picture has one scale for both axes, a range of colou
   CHECK(has(script, "set cblabel 'pressure [Pa]'\n"));
   CHECK(has(script, "set output 'house.svg'\n"));
   CHECK(has(script, "set output 'house.png'\n"));
-  // 3 m by 2 m, with 3 % of the longer side around: 3.18 m over 785 px make 2.18 m 538 px; 161 px are around them
-  CHECK(has(script, "size 900,699 "));
+  // 3 m by 2 m, with 3 % of the longer side around: 3.18 m over 770 px make 2.18 m 528 px; 183 px are around them
+  CHECK(has(script, "size 900,711 "));
 }
 
 TEST_CASE("cells that are not finite, in place or value, are left out of picture and range")
