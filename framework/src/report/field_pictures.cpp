@@ -67,10 +67,11 @@ struct Field {
   bool is_on_elements = false;
   std::size_t n_components = 1;
 
-  /// Pressures and stresses first, then speeds, then the rest; what is computed on elements before what is on nodes.
+  /// Pressures and stresses first, then speeds, numbers such as Mach's, the rest; what is computed on elements before
+  /// what is on nodes.
   [[nodiscard]] auto rank() const
   {
-    return std::tuple(unit == "Pa" ? 0 : unit == "m/s" ? 1 : 2, !is_on_elements, name, unit);
+    return std::tuple(unit == "Pa" ? 0 : unit == "m/s" ? 1 : unit == "1" ? 2 : 3, !is_on_elements, name, unit);
   }
   bool operator<(const Field& other) const { return rank() < other.rank(); }
 };

@@ -70,10 +70,10 @@ std::pair<double, double> size_of(const Box& box)
   return {std::clamp(down / ratio, smallest_side, room), down};
 }
 
-/// The distance between numbers at an axis: 1, 2 or 5 times a power of ten, such that at most `n` of them, or one, fit.
+/// The distance between numbers at an axis: 1, 2 or 5 times a power of ten, such that at most `n` of them, or two, fit.
 double tick_step(double span, double n)
 {
-  const double wanted = span / std::max(n, 1.0);
+  const double wanted = span / std::max(n, 2.0);
   const double decade = std::pow(10.0, std::floor(std::log10(wanted)));
   for (const double digit : {1.0, 2.0, 5.0})
     if (digit * decade >= wanted) return digit * decade;
@@ -139,7 +139,7 @@ std::string plot_script(const Picture& picture)
   const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
   const double span = *highest - *lowest; // if it is next to nothing, axis_range() has chosen another one
   if (span > 1e-9 * std::max(std::abs(*lowest), std::abs(*highest)))
-    script += fmt::format("set cbtics {}\n", tick_step(span, 6)); // so many numbers fit, long ones too
+    script += fmt::format("set cbtics {}\n", tick_step(span, 8)); // so many numbers fit, long ones too
   script += fmt::format("set colorbox horizontal user origin screen {:.4f}, screen {:.4f} size screen {:.4f}, "
                         "screen {:.4f}\n",
                         left / width, below_bar / whole, 1.0 - (left + right) / width, bar_height / whole);
