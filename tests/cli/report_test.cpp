@@ -210,6 +210,37 @@ TEST_CASE("the report of a run is one page with its plots, and nothing on it is 
   check_looks(folder / "out", folder.path(), n_piston_plots);
 }
 
+TEST_CASE("the report of a moving plane mesh shows its fields and its displacement, and residuals over decades")
+{
+  const RunFolder folder;
+  // lifted by up to 0.0009765625 * 4 m * 2 = 7.8125 mm, of a mesh 4 m long: too little to be seen
+  write(folder / "case.toml", "[run]\nname = \"waving\"\nend_time = 2.0\ndt = 1.0\n"
+                              "[fluid]\nmodule = \"waving_fluid\"\namplitude = 0.0009765625\n"
+                              "[driver]\nscheme = \"uncoupled\"\n[output]\nevery = 1\n");
+  const auto run = folder.run({.file = (folder / "case.toml").string(), .sets = {}, .flags = {"--inline"}});
+  REQUIRE_MESSAGE(run.exit_code == 0, run.err);
+
+  const auto result = folder.command({"report", "out"});
+
+  REQUIRE_MESSAGE(result.exit_code == 0, result.err);
+  CHECK(result.out == "out/report/report.html (6 plots)\n"); // four pictures, the residual, the timings
+  const auto html = check_report(folder / "out", 6);
+  for (const char* text :
+       {"<h2>Fields</h2>", "The last output, of step 2, t = 2 s", "<h3>fluid.volume: pressure at t = 2 s</h3>",
+        "<h3>fluid.volume: magnitude of velocity at t = 2 s</h3>", "<h3>fluid.volume: displacement at t = 2 s</h3>",
+        "drawn 50 times as large</h3>", "<h2>Residuals</h2>"})
+    CHECK_MESSAGE(has(html, text), text);
+  CHECK(has(html, "src=\"data:image/png;base64,iVBORw0KGgo")); // the signature of PNG in base 64
+  const auto pressure = read_file(folder / "out/report/plots/fluid_volume-pressure.svg");
+  std::size_t n_cells = 0;
+  for (auto at = pressure.find("<polygon fill"); at != std::string::npos; at = pressure.find("<polygon fill", at + 1))
+    ++n_cells;
+  CHECK(n_cells >= 4 + 8); // a row of quadrilaterals, a row of triangles; those of the colour bar
+  const auto residual = read_file(folder / "out/report/plots/Residuals-solver_residual.svg");
+  for (const char* tick : {">1<", ">0.1<", ">0.01<"}) CHECK_MESSAGE(has(residual, tick), "no tick at ", tick);
+  CHECK_FALSE(has(residual, ">0.4<")); // where a linear axis has one
+}
+
 TEST_CASE("a report again leaves no plot of the one before")
 {
   const RunFolder folder;

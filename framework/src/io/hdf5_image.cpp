@@ -269,6 +269,14 @@ Extents ImageReader::extents(const std::string& path) const
   return {sizes.begin(), sizes.end()};
 }
 
+bool ImageReader::holds_f64(const std::string& path) const
+{
+  const auto where = source_ + ":" + path;
+  const auto set = own(H5Dopen2(file_.get(), path.c_str(), H5P_DEFAULT), H5Dclose, "open", where);
+  const auto stored = own(H5Dget_type(set.get()), H5Tclose, "read the type of", where);
+  return H5Tget_class(stored.get()) == H5T_FLOAT && H5Tget_size(stored.get()) == sizeof(double);
+}
+
 template <class T> std::vector<T> ImageReader::read(const std::string& path, std::int64_t type) const
 {
   const auto where = source_ + ":" + path;

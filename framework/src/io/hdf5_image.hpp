@@ -78,6 +78,7 @@ public:
   [[nodiscard]] bool has(const std::string& path) const;
   [[nodiscard]] std::vector<std::string> names(const std::string& group) const; ///< sorted
   [[nodiscard]] Extents extents(const std::string& path) const;
+  [[nodiscard]] bool holds_f64(const std::string& path) const; ///< whether f64() can read it
   [[nodiscard]] std::vector<double> f64(const std::string& path) const;
   [[nodiscard]] std::vector<std::int32_t> i32(const std::string& path) const;
   [[nodiscard]] std::vector<std::int64_t> i64(const std::string& path) const;

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 namespace mullion::report {
 namespace {
@@ -50,6 +51,13 @@ void write(const fs::path& path, const std::string& text)
   MULLION_REQUIRE(file.good(), Errc::io, "cannot write {}: is that disk full?", path.string());
 }
 
+/// gnuplot's SVG without hairs of the background between the polygons: each of their edges is smoothed by itself.
+std::string with_crisp_polygons(std::string svg)
+{
+  const auto at = svg.find("<defs>");
+  return at == std::string::npos ? svg : svg.insert(at, "<style>polygon { shape-rendering: crispEdges; }</style>\n");
+}
+
 /// Run gnuplot in the folder; what it says goes to a file there.
 void run_gnuplot(const TemporaryFolder& folder)
 {
@@ -84,20 +92,29 @@ void run_gnuplot(const TemporaryFolder& folder)
 
 } // namespace
 
-std::vector<Drawing> draw(const std::vector<Plot>& plots)
+std::vector<Drawing> draw(const std::vector<Figure>& figures)
 {
-  if (plots.empty()) return {};
+  if (figures.empty()) return {};
   const TemporaryFolder folder;
   std::string script;
-  for (const auto& plot : plots) {
-    write(folder / (plot.name + ".dat"), plot_data(plot));
-    script += plot_script(plot);
-  }
+  std::vector<std::string> names;
+  for (const auto& figure : figures)
+    std::visit(
+        [&](const auto& f) {
+          write(folder / (f.name + ".dat"), plot_data(f));
+          script += plot_script(f);
+          names.push_back(f.name);
+        },
+        figure);
   write(folder / "plots.gp", script);
   run_gnuplot(folder);
   std::vector<Drawing> drawings;
-  for (const auto& plot : plots)
-    drawings.push_back({io::read_text(folder / (plot.name + ".svg")), io::read_text(folder / (plot.name + ".png"))});
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const auto file = folder / (names[i] + ".svg");
+    auto svg = fs::exists(file) ? io::read_text(file) : std::string();
+    if (std::holds_alternative<Picture>(figures[i])) svg = with_crisp_polygons(std::move(svg));
+    drawings.push_back({std::move(svg), io::read_text(folder / (names[i] + ".png"))});
+  }
   return drawings;
 }
 

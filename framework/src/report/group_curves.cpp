@@ -69,7 +69,7 @@ std::set<std::string> interface_windows(const CsvTable& history)
 Section section_of(const std::string& column, const std::string& unit, const std::set<std::string>& interfaces)
 {
   if (column.starts_with("work_") || column.starts_with("impulse_")) return Section::ledger;
-  if (column.ends_with(".residual")) return Section::residuals;
+  if (column.ends_with("residual") || column.ends_with("residual.max")) return Section::residuals;
   if (column.starts_with("driver.")) return Section::driver;
   if (unit == "J") return Section::energies;
   return interfaces.contains(window_of(column)) ? Section::interface : Section::outputs;

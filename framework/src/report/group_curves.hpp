@@ -26,9 +26,9 @@ struct CurveGroup {
 /// The first finite number of the column, what energies are compared with; NaN if there is none.
 [[nodiscard]] double first_value(const CsvColumn& column);
 
-/// All columns with finite numbers but `step` and `time`, by section: "work_*", "impulse_*", "driver.*", "*.residual", unit J, the
-/// windows of the interface (those with a displacement, velocity, traction or load), other outputs. On the interface
-/// these quantities come first, for the rest the order is that of the columns.
+/// All columns with finite numbers but `step` and `time`, by section: "work_*", "impulse_*", "*residual" (".max" of it
+/// too), "driver.*", unit J, the windows of the interface (those with a displacement, velocity, traction or load),
+/// other outputs. On the interface these quantities come first, for the rest the order is that of the columns.
 ///
 /// @param units  of columns, SI; those that are missing are taken as of one unknown unit a field name
 [[nodiscard]] std::vector<CurveGroup> group_curves(const CsvTable& history,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <system_error>
 
 namespace mullion::report {
@@ -26,6 +27,7 @@ tr.failed td { background: #fdf3ec; }
 figure { margin: 1.2em 0 1.8em; break-inside: avoid; }
 figure h3 { font-size: 1em; margin: 0 0 .3em; overflow-wrap: anywhere; }
 figure svg { display: block; width: 100%; height: auto; }
+figure img { display: block; max-width: 100%; height: auto; }
 figcaption { font-size: .87em; color: #444; overflow-wrap: anywhere; }
 pre { background: #f6f6f6; padding: .8em; overflow-x: auto; }
 a { color: #0072B2; }
@@ -110,12 +112,37 @@ std::string inline_svg(std::string svg, const std::string& name, const std::stri
   return svg;
 }
 
+std::string base64(const std::string& bytes)
+{
+  constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve(4 * (bytes.size() / 3 + 1));
+  for (std::size_t i = 0; i < bytes.size(); i += 3) { // three bytes are four digits
+    std::uint32_t group = 0;
+    for (std::size_t b = 0; b < 3; ++b)
+      group = (group << 8) | (i + b < bytes.size() ? static_cast<unsigned char>(bytes[i + b]) : 0U);
+    const auto n_bytes = std::min<std::size_t>(3, bytes.size() - i);
+    for (std::size_t d = 0; d < 4; ++d) text += d <= n_bytes ? digits[(group >> (18 - 6 * d)) & 63U] : '=';
+  }
+  return text;
+}
+
 std::string figure_html(const Plot& plot, const Drawing& drawing)
 {
   return fmt::format("<figure><h3>{0}</h3>\n{1}\n<figcaption>{2}{3}<a href=\"plots/{4}.svg\">{4}.svg</a>, "
                      "<a href=\"plots/{4}.png\">{4}.png</a></figcaption></figure>\n",
                      escape(plot.title), inline_svg(drawing.svg, plot.name, plot.title), escape(plot.caption),
                      plot.caption.empty() ? "" : " ", escape(plot.name));
+}
+
+std::string figure_html(const Picture& picture, const Drawing& drawing)
+{
+  const auto name = escape(picture.name), title = escape(picture.title);
+  const auto svg = drawing.svg.empty() ? "" : fmt::format("<a href=\"plots/{0}.svg\">{0}.svg</a>, ", name);
+  return fmt::format("<figure><h3>{0}</h3>\n<img alt=\"{0}\" src=\"data:image/png;base64,{1}\">\n"
+                     "<figcaption>{2}{3}{4}<a href=\"plots/{5}.png\">{5}.png</a></figcaption></figure>\n",
+                     title, base64(drawing.png), escape(picture.caption), picture.caption.empty() ? "" : " ", svg,
+                     name);
 }
 
 std::string page_html(const std::string& title, const std::string& body)

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <set>
+#include <utility>
 
 namespace mullion::report {
 namespace {
@@ -14,12 +15,13 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Files of one name would replace each other: "velocity", "velocity-2", …
-void make_names_unique(std::vector<Plot>& plots)
+void make_names_unique(std::vector<Figure>& figures)
 {
   std::set<std::string> taken;
-  for (auto& plot : plots) {
-    const auto wanted = plot.name;
-    for (int n = 2; !taken.insert(plot.name).second; ++n) plot.name = fmt::format("{}-{}", wanted, n);
+  for (auto& figure : figures) {
+    auto& name = std::visit([](auto& f) -> std::string& { return f.name; }, figure);
+    const auto wanted = name;
+    for (int n = 2; !taken.insert(name).second; ++n) name = fmt::format("{}-{}", wanted, n);
   }
 }
 
@@ -32,13 +34,13 @@ void remove_old_plots(const fs::path& folder)
 
 } // namespace
 
-std::size_t write_page(const fs::path& folder, const Page& page)
+std::size_t write_page(const fs::path& folder, Page page)
 {
-  std::vector<Plot> plots;
-  for (const auto& piece : page.pieces)
-    if (const auto* plot = std::get_if<Plot>(&piece)) plots.push_back(*plot);
-  make_names_unique(plots);
-  const auto drawings = draw(plots);
+  std::vector<Figure> figures;
+  for (auto& piece : page.pieces)
+    if (auto* figure = std::get_if<Figure>(&piece)) figures.push_back(std::move(*figure));
+  make_names_unique(figures);
+  const auto drawings = draw(figures);
 
   const auto out = folder / "report";
   io::make_folder(out / "plots");
@@ -50,13 +52,18 @@ std::size_t write_page(const fs::path& folder, const Page& page)
       body += html->text;
       continue;
     }
-    body += figure_html(plots[n], drawings[n]);
-    io::write_atomically(out / "plots" / (plots[n].name + ".svg"), drawings[n].svg);
-    io::write_atomically(out / "plots" / (plots[n].name + ".png"), drawings[n].png);
+    const auto& drawing = drawings[n];
+    std::visit(
+        [&](const auto& figure) {
+          body += figure_html(figure, drawing);
+          if (!drawing.svg.empty()) io::write_atomically(out / "plots" / (figure.name + ".svg"), drawing.svg);
+          io::write_atomically(out / "plots" / (figure.name + ".png"), drawing.png);
+        },
+        figures[n]);
     ++n;
   }
   io::write_atomically(out / "report.html", page_html(page.title, body));
-  return plots.size();
+  return figures.size();
 }
 
 } // namespace mullion::report

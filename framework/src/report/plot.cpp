@@ -48,17 +48,6 @@ bool has_labels(const Plot& plot) { return plot.shape == Shape::dots || plot.sha
 // How many characters find room.
 constexpr std::size_t legend_room = 95, x_room = 80, y_room = 44, label_room = 45;
 
-/// A text with its middle left out, if it has more characters: the ends, with the unit, tell more.
-std::string shorten(const std::string& text, std::size_t room)
-{
-  if (text.size() <= room) return text;
-  const auto is_within_character = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80; };
-  auto head = room / 2, tail = text.size() - (room - room / 2);
-  while (head > 0 && is_within_character(head)) --head;
-  while (tail < text.size() && is_within_character(tail)) ++tail;
-  return text.substr(0, head) + "…" + text.substr(tail);
-}
-
 std::size_t longest_title(const Plot& plot)
 {
   std::size_t longest = 1;
@@ -129,6 +118,16 @@ std::string quote(const std::string& text)
     else quoted += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
   }
   return quoted + "'";
+}
+
+std::string shorten(const std::string& text, std::size_t room)
+{
+  if (text.size() <= room) return text;
+  const auto is_within_character = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80; };
+  auto head = room / 2, tail = text.size() - (room - room / 2);
+  while (head > 0 && is_within_character(head)) --head;
+  while (tail < text.size() && is_within_character(tail)) ++tail;
+  return text.substr(0, head) + "…" + text.substr(tail);
 }
 
 std::string axis_range(const std::vector<double>& values, bool is_log, double margin)

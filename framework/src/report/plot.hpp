@@ -4,6 +4,7 @@
 // line on white; dashes and point shapes differ too, so a print without colours can be read.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,9 @@ inline constexpr std::size_t max_curves = 14;
 /// A text as a constant of the script: in single quotes, within which gnuplot expands nothing; control characters
 /// become spaces.
 [[nodiscard]] std::string quote(const std::string& text);
+
+/// A text with its middle left out, if it has more characters than `room`: the ends, with the unit, tell more.
+[[nodiscard]] std::string shorten(const std::string& text, std::size_t room);
 
 /// The curves' numbers: a block a curve, two empty lines between them. Bars are stacked here.
 [[nodiscard]] std::string plot_data(const Plot& plot);

@@ -6,6 +6,7 @@
 #include <mullion/sdk/error.hpp>
 
 #include <filesystem>
+#include <utility>
 
 namespace mullion {
 
@@ -17,8 +18,8 @@ Report write_report(const std::string& folder)
   const bool is_study = fs::exists(fs::path(folder) / "study.json");
   MULLION_REQUIRE(is_study || fs::exists(fs::path(folder) / "run.json"), Errc::config,
                   "{} holds neither run.json nor study.json; expected the results of a run or a study", folder);
-  const auto page = is_study ? report::study_page(folder) : report::run_page(folder);
-  const auto n_plots = report::write_page(folder, page);
+  auto page = is_study ? report::study_page(folder) : report::run_page(folder);
+  const auto n_plots = report::write_page(folder, std::move(page));
   return {(fs::path(folder) / "report" / "report.html").string(), n_plots};
 }
 

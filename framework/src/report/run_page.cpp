@@ -1,11 +1,12 @@
-// The report about a run: what was run, how it went, its history in plots, where the time went, and its case. Nothing
-// of it is required: a run that failed early, or is still going on, has less to show.
+// The report about a run: what was run, how it went, its fields in pictures, its history in plots, where the time went,
+// and its case. Nothing of it is required: a run that failed early, or is still going on, has less to show.
 #include "report/page.hpp"
 
 #include "io/atomic_file.hpp"
 #include "io/run_record.hpp"
 #include "report/csv_table.hpp"
 #include "report/decimate.hpp"
+#include "report/field_pictures.hpp"
 #include "report/group_curves.hpp"
 #include "report/html.hpp"
 
@@ -111,25 +112,21 @@ std::string quantities(const std::vector<const CsvColumn*>& columns)
   return names.size() > at_most ? text + ", …" : text;
 }
 
-/// More than two decades and all of one sign: what a linear axis cannot show.
-bool wants_log(const std::vector<Curve>& curves)
+/// Whether a logarithmic axis has anything to show.
+bool has_positive(const CurveGroup& group)
 {
-  double low = std::numeric_limits<double>::infinity(), high = 0.0;
-  for (const auto& curve : curves)
-    for (const double y : curve.y) {
-      if (!std::isfinite(y)) continue;
-      low = std::min(low, y);
-      high = std::max(high, y);
-    }
-  return low > 0.0 && high > 100.0 * low;
+  const auto is_positive = [](double value) { return std::isfinite(value) && value > 0.0; };
+  return std::any_of(group.columns.begin(), group.columns.end(), [&](const CsvColumn* column) {
+    return std::any_of(column->numbers.begin(), column->numbers.end(), is_positive);
+  });
 }
 
 struct Omitted {
   std::size_t not_finite = 0, not_positive = 0;
 };
 
-/// The column as it is drawn: energies as changes since the start, residuals without what a logarithm cannot show.
-std::vector<double> drawn_values(const CsvColumn& column, Section section, Omitted& omitted)
+/// The column as it is drawn: energies as changes since the start, others without what a logarithm cannot show.
+std::vector<double> drawn_values(const CsvColumn& column, Section section, bool is_log, Omitted& omitted)
 {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const double start = first_value(column);
@@ -137,7 +134,7 @@ std::vector<double> drawn_values(const CsvColumn& column, Section section, Omitt
   for (double& value : values) {
     if (section == Section::energies && std::isfinite(value)) value -= start;
     if (!std::isfinite(value)) ++omitted.not_finite;
-    else if (section == Section::residuals && value <= 0.0) ++omitted.not_positive, value = none;
+    else if (is_log && value <= 0.0) ++omitted.not_positive, value = none;
   }
   return values;
 }
@@ -164,8 +161,9 @@ Plot history_plot(const CurveGroup& group, const std::vector<double>& time)
   Plot plot;
   Omitted omitted;
   bool is_thinned = false;
+  const bool is_log = group.section == Section::residuals && has_positive(group);
   for (const auto* column : group.columns) {
-    const auto values = drawn_values(*column, group.section, omitted);
+    const auto values = drawn_values(*column, group.section, is_log, omitted);
     auto& curve = plot.curves.emplace_back();
     curve.title = column->name;
     if (group.section == Section::energies && starts_elsewhere(column))
@@ -186,8 +184,7 @@ Plot history_plot(const CurveGroup& group, const std::vector<double>& time)
   if (is_change) plot.title += ", change since the start";
   plot.shape = time.size() <= few_points ? Shape::marked : Shape::lines;
   plot.x = {"time [s]", false};
-  plot.y = {with_unit((is_change ? "change of " : "") + label, group.unit),
-            group.section == Section::residuals && wants_log(plot.curves)};
+  plot.y = {with_unit((is_change ? "change of " : "") + label, group.unit), is_log};
   plot.caption = caption(time.size(), is_thinned, omitted);
   return plot;
 }
@@ -289,6 +286,7 @@ Page run_page(const fs::path& folder)
   Page page;
   add_facts(page, *record);
   if (!record->attempts.empty()) add_modules(page, record->attempts.back());
+  add_field_pictures(page, folder);
   add_history(page, folder, *record);
   if (!record->attempts.empty()) add_timings(page, record->attempts.back());
   add_attempts(page, *record);

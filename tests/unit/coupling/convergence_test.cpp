@@ -162,12 +162,13 @@ TEST_CASE("growth counts against the first change of this step, not of an earlie
   CHECK(complaint(convergence, 1, all(1e5), all(0.0)) == "");
 }
 
-TEST_CASE("a first change of rounding size is no measure: growth counts from the floor")
+TEST_CASE("a first change that passes is no measure: growth counts from the first that does not")
 {
   Convergence convergence({{"velocity", 0.0, 1e-6}});
   convergence.begin_step(third_step);
 
   CHECK(complaint(convergence, 0, all(1e-15), all(0.0)) == "");
-  CHECK(complaint(convergence, 1, all(0.1), all(0.0)) == ""); // 0.24 < 1e6 times the floor
-  CHECK(complaint(convergence, 2, all(1.0), all(0.0)) != ""); // 2.4
+  CHECK(complaint(convergence, 1, all(1.0), all(0.0)) == ""); // however large: the first guess met the rest before
+  CHECK(complaint(convergence, 2, all(1e5), all(0.0)) == "");
+  CHECK(complaint(convergence, 3, all(1e7), all(0.0)) != "");
 }

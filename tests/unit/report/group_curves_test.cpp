@@ -87,10 +87,9 @@ TEST_CASE("ledger, driver, residuals, energies and other outputs have sections o
                               {"structure.body.energy", {0, 4}},
                               {"fluid.volume.total_mass", {1, 1}}});
 
-  const auto groups = group_curves(table, {{"fluid.volume.energy", "J"},
-                                           {"structure.body.energy", "J"},
-                                           {"work_fluid", "J"},
-                                           {"impulse_fluid_x", "N s"}});
+  const auto groups = group_curves(
+      table,
+      {{"fluid.volume.energy", "J"}, {"structure.body.energy", "J"}, {"work_fluid", "J"}, {"impulse_fluid_x", "N s"}});
 
   std::vector<Section> sections;
   for (const auto& group : groups) sections.push_back(group.section);
@@ -131,4 +130,17 @@ TEST_CASE("the quantity of a column is its field's name")
   CHECK(quantity_of("structure.wet.velocity[3]_y.mean") == "velocity");
   CHECK(quantity_of("fluid.wall.traction_mean") == "traction_mean");
   CHECK(quantity_of("energy") == "energy");
+}
+
+TEST_CASE("what ends with residual is one, whoever reports it, also as the largest of many")
+{
+  const auto section_of = [](const char* name) {
+    const auto table = history({{name, {1e-3, 1e-9}}});
+    return group_curves(table, {}).at(0).section;
+  };
+
+  for (const char* name : {"fluid.volume.solver_residual", "driver.inner.residual", "driver.fluid_residual",
+                           "structure.body.residual.max"})
+    CHECK_MESSAGE(section_of(name) == Section::residuals, name);
+  CHECK(section_of("fluid.volume.residual_mass") == Section::outputs);
 }

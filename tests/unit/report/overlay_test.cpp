@@ -51,7 +51,7 @@ std::vector<Plot> pictures(const StudyFolder& folder, nlohmann::json plot)
   add_overlay(page, folder.path, whole, table, {table.find("length"), table.find("scheme")}, 1);
   std::vector<Plot> plots;
   for (const auto& piece : page.pieces)
-    if (const auto* drawn = std::get_if<Plot>(&piece)) plots.push_back(*drawn);
+    if (const auto* drawn = std::get_if<Figure>(&piece)) plots.push_back(std::get<Plot>(*drawn));
   return plots;
 }
 
