@@ -69,8 +69,6 @@ Eigen::Index nearest(const Eigen::MatrixXd& nodes, const Eigen::VectorXd& x)
 ElasticSolid::ElasticSolid(const Options& options) : options_(options)
 {
   const auto& o = options;
-  MULLION_REQUIRE(o.poisson_ratio < 0.5 || o.plane == "stress", Errc::config,
-                  "poisson_ratio = 0.5 with plane = \"strain\": nothing could give way; take it below 0.5");
   MULLION_REQUIRE(o.integrator != "newmark" || o.beta > 0.0, Errc::config,
                   "beta = 0 with integrator = \"newmark\" is the explicit method: take \"central_difference\"");
   MULLION_REQUIRE(o.prescribed.empty() == o.prescribed_displacement.empty(), Errc::config,
@@ -346,8 +344,8 @@ void ElasticSolid::build()
   if (!options_.prescribed.empty())
     prescribed_displacement_ = compiled("prescribed_displacement", options_.prescribed_displacement, d);
   if (!options_.edge_load.empty()) edge_traction_ = compiled("edge_traction", options_.edge_traction, d);
-  monitor_ = nearest(solid_.nodes, options_.monitor.empty() ? Eigen::VectorXd(wet.coordinates.rowwise().mean())
-                                                            : point_in(options_.monitor, d));
+  monitor_ = options_.monitor.empty() ? wet_nodes_[nearest(wet.coordinates, wet.coordinates.rowwise().mean())]
+                                      : nearest(solid_.nodes, point_in(options_.monitor, d));
   stiffness_solver_.reset();
   mass_solver_.reset();
   newmark_.reset();
