@@ -152,7 +152,8 @@ private:
   // Derived: a function of parameters and windows.
   Solid solid_;
   System system_;
-  std::vector<bool> is_held_; ///< of the degrees of freedom: not free
+  SparseMatrix stress_matrix_; ///< of the displacements
+  std::vector<bool> is_held_;  ///< of the degrees of freedom: not free
   std::vector<Index> moved_nodes_;
   Surface wet_surface_; ///< of the wet nodes
   Eigen::VectorX<Index> wet_nodes_;
