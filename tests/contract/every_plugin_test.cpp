@@ -74,6 +74,8 @@ PluginCase in_the_plane(PluginCase c)
 }
 
 const std::string gas = "fluid_density=1.3", sound = "sound_speed=328.165"; // what cibc must be told
+const std::string block = "tests/verification/solid_under_traction.toml", arch = "configs/arch_modes.toml";
+const std::string arch_steps = "run.end_time=4.0e-4"; // 40 steps
 const std::vector<PluginCase> cases = {
     {piston, {piston_steps, "output.every=10", "fluid.cells=20"}},
     {piston,
@@ -118,6 +120,18 @@ const std::vector<PluginCase> cases = {
     probed("node_projection", {"driver.motion=displacement"}),
     in_the_plane(probed("nearest_projection", {"driver.fluid_exports=traction", "fluid.on=faces"})),
     probed("nearest_neighbor", {"driver.fluid_exports=load", "fluid.on=load", "driver.structure_receives=load"}),
+    {block, {"structure.modes=3"}},
+    {block, {"structure.integrator=generalised_alpha", "structure.substeps=2", "structure.rayleigh_mass=10.0"}},
+    {block,
+     {"structure.integrator=central_difference", "structure.mass=lumped", "structure.substeps=2",
+      "driver.structure_receives=load"}},
+    {block, {"structure.integrator=static", "structure.mesh=box:10x4,triangles,size=0.3x0.1"}},
+    {arch, {arch_steps, "output.every=10", "structure.subtract_steady_load=true"}},
+    {arch, {arch_steps, "output.every=10", "structure.initial=mode", "structure.initial_mode=7"}},
+    {arch,
+     {arch_steps, "output.every=10", "structure.initial=expressions", "structure.initial_amplitude=0.0",
+      "structure.prescribed=end", "structure.clamped=start", "structure.prescribed_displacement=0; 1e-4*sin(5e3*t)",
+      "structure.edge_load=inner", "structure.edge_traction=0; 1e4*t"}},
 };
 
 test::CaseRun to_run(const PluginCase& c, const std::vector<std::string>& flags, const std::string& out)

@@ -58,14 +58,14 @@ public:
           parameter("edge_load", &Options::edge_load, "", "groups that edge_traction loads, whatever the fluid does"),
           parameter("edge_traction", &Options::edge_traction, "Pa", "\"tx; ty\", functions of x, y, z, t"),
           parameter("youngs_modulus", &Options::youngs_modulus, "Pa", "E", above(0.0)),
-          parameter("poisson_ratio", &Options::poisson_ratio, "1", "nu; below 0.5 but in plane stress",
-                    Range{.lower = -1.0, .upper = 0.5, .excludes_lower = true}),
+          parameter("poisson_ratio", &Options::poisson_ratio, "1", "nu",
+                    Range{.lower = -1.0, .upper = 0.5, .excludes_lower = true, .excludes_upper = true}),
           parameter("density", &Options::density, "kg/m^3", "mass per reference volume", above(0.0)),
           parameter("thickness", &Options::thickness, "m", "of the plane, in 2D", above(0.0)),
           parameter("plane", &Options::plane, "", "in 2D: a thin plate, or a slice of a long body",
                     one_of("stress", "strain")),
           parameter("element", &Options::element, "",
-                    "quadrilaterals and hexahedra: standard, or with enhanced strains, which do not lock in bending",
+                    "standard, or quadrilaterals and hexahedra with enhanced strains, which do not lock in bending",
                     one_of("standard", "enhanced")),
           parameter("mass", &Options::mass, "", "matrix", one_of("consistent", "lumped")),
           parameter("integrator", &Options::integrator, "",
@@ -90,7 +90,7 @@ public:
           parameter("initial_displacement", &Options::initial_displacement, "m", "expressions: \"ux; uy\" of x, y, z"),
           parameter("initial_velocity", &Options::initial_velocity, "m/s", "expressions: \"vx; vy\" of x, y, z"),
           parameter("monitor", &Options::monitor, "m",
-                    "\"x, y\": the node nearest to it is recorded; the wet surface's centre if left out"),
+                    "\"x, y\": the node nearest to it is recorded; if left out, the wet one nearest to their centre"),
           parameter("subtract_steady_load", &Options::subtract_steady_load, "",
                     "take the first load that is received off every later one"),
           parameter("modes", &Options::modes, "1",
@@ -152,7 +152,8 @@ private:
   // Derived: a function of parameters and windows.
   Solid solid_;
   System system_;
-  std::vector<bool> is_held_; ///< of the degrees of freedom: not free
+  SparseMatrix stress_matrix_; ///< of the displacements
+  std::vector<bool> is_held_;  ///< of the degrees of freedom: not free
   std::vector<Index> moved_nodes_;
   Surface wet_surface_; ///< of the wet nodes
   Eigen::VectorX<Index> wet_nodes_;

@@ -136,13 +136,10 @@ Eigen::MatrixXd element_mass(Shape shape, const Eigen::MatrixXd& nodes, double d
   return mass;
 }
 
-Eigen::VectorXd centre_stress(Shape shape, const Eigen::MatrixXd& nodes, const Eigen::MatrixXd& elasticity,
-                              const Eigen::MatrixXd& displacement)
+Eigen::MatrixXd centre_stress_matrix(Shape shape, const Eigen::MatrixXd& nodes, const Eigen::MatrixXd& elasticity)
 {
   const auto s = shape_values(shape, reference_centre(shape));
-  const Eigen::MatrixXd gradients = s.gradients * (nodes * s.gradients).inverse();
-  const Eigen::MatrixXd d = displacement;
-  return elasticity * (strain_matrix(gradients) * d.reshaped());
+  return elasticity * strain_matrix(s.gradients * (nodes * s.gradients).inverse());
 }
 
 } // namespace mullion::elastic_solid

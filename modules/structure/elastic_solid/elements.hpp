@@ -42,9 +42,8 @@ enum class Formulation {
 /// Consistent mass m_ab = int rho N_a N_b dV, one component, (n_nodes x n_nodes) [kg per m of depth in 2D].
 [[nodiscard]] Eigen::MatrixXd element_mass(Shape shape, const Eigen::MatrixXd& nodes, double density);
 
-/// Stress at the element's centre, C B d [Pa]; enhanced strains vanish there.
-/// @param displacement  (d x n_nodes) [m]
-[[nodiscard]] Eigen::VectorXd centre_stress(Shape shape, const Eigen::MatrixXd& nodes,
-                                            const Eigen::MatrixXd& elasticity, const Eigen::MatrixXd& displacement);
+/// Stress at the element's centre of the nodal displacements, C B [Pa/m]; enhanced strains vanish there.
+[[nodiscard]] Eigen::MatrixXd centre_stress_matrix(Shape shape, const Eigen::MatrixXd& nodes,
+                                                   const Eigen::MatrixXd& elasticity);
 
 } // namespace mullion::elastic_solid

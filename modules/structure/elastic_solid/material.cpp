@@ -18,12 +18,12 @@ Eigen::MatrixXd elasticity(const Material& material, int dimension)
   return c;
 }
 
-Eigen::Matrix<double, 6, 1> full_stress(const Material& material, const Eigen::VectorXd& stress)
+Eigen::MatrixXd full_stress_matrix(const Material& material, int dimension)
 {
-  if (stress.size() == 6) return stress;
-  const double zz = material.plane == Plane::strain ? material.poisson_ratio * (stress[0] + stress[1]) : 0.0;
-  Eigen::Matrix<double, 6, 1> all;
-  all << stress[0], stress[1], zz, stress[2], 0.0, 0.0;
+  if (dimension == 3) return Eigen::MatrixXd::Identity(6, 6);
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(6, 3);
+  all(0, 0) = all(1, 1) = all(3, 2) = 1.0;
+  if (material.plane == Plane::strain) all(2, 0) = all(2, 1) = material.poisson_ratio;
   return all;
 }
 

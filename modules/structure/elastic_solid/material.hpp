@@ -22,8 +22,9 @@ struct Material {
 ///     plane strain and 3D: lambda = E nu/((1 + nu)(1 - 2 nu)), mu = E/(2 (1 + nu))
 [[nodiscard]] Eigen::MatrixXd elasticity(const Material& material, int dimension);
 
-/// All six stresses (xx, yy, zz, xy, yz, zx) from those of `elasticity`: in plane strain zz = nu (xx + yy).
-[[nodiscard]] Eigen::Matrix<double, 6, 1> full_stress(const Material& material, const Eigen::VectorXd& stress);
+/// All six stresses (xx, yy, zz, xy, yz, zx) from those of `elasticity`, as a matrix: in plane strain zz = nu (xx +
+/// yy).
+[[nodiscard]] Eigen::MatrixXd full_stress_matrix(const Material& material, int dimension);
 
 /// Von Mises' equivalent stress sqrt(3/2 s : s), s the deviator [Pa].
 [[nodiscard]] double von_mises(const Eigen::Matrix<double, 6, 1>& stress);

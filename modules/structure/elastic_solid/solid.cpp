@@ -20,9 +20,10 @@ Eigen::MatrixXd columns(const Eigen::MatrixXd& all, const Eigen::VectorX<Index>&
   return out;
 }
 
-SparseMatrix from_triplets(Eigen::Index n, const std::vector<Eigen::Triplet<double>>& triplets)
+SparseMatrix from_triplets(Eigen::Index n_rows, Eigen::Index n_columns,
+                           const std::vector<Eigen::Triplet<double>>& triplets)
 {
-  SparseMatrix matrix(n, n);
+  SparseMatrix matrix(n_rows, n_columns);
   matrix.setFromTriplets(triplets.begin(), triplets.end()); // equal places are summed in the order of the list
   matrix.makeCompressed();
   return matrix;
@@ -114,7 +115,7 @@ SparseMatrix stiffness_matrix(const Solid& solid)
     for (Eigen::Index j = 0; j < k.cols(); ++j)
       for (Eigen::Index i = 0; i < k.rows(); ++i) triplets.emplace_back(dof(i), dof(j), k(i, j));
   });
-  return from_triplets(solid.n_dofs(), triplets);
+  return from_triplets(solid.n_dofs(), solid.n_dofs(), triplets);
 }
 
 SparseMatrix mass_matrix(const Solid& solid, MassKind kind)
@@ -129,18 +130,22 @@ SparseMatrix mass_matrix(const Solid& solid, MassKind kind)
         for (Eigen::Index i = 0; i < d; ++i)
           triplets.emplace_back(nodes[a] * d + i, nodes[kind == MassKind::lumped ? a : b] * d + i, m(a, b));
   });
-  return from_triplets(solid.n_dofs(), triplets);
+  return from_triplets(solid.n_dofs(), solid.n_dofs(), triplets);
 }
 
-Eigen::MatrixXd stresses(const Solid& solid, const Eigen::MatrixXd& displacement)
+SparseMatrix stress_matrix(const Solid& solid)
 {
+  const Eigen::Index d = solid.dimension();
   const auto c = elasticity(solid.material, solid.dimension());
-  Eigen::MatrixXd out(6, n_elements(solid));
+  const auto all = full_stress_matrix(solid.material, solid.dimension());
+  std::vector<Eigen::Triplet<double>> triplets;
   for_each_element(solid, [&](Eigen::Index e, Shape shape, const Eigen::VectorX<Index>& nodes) {
-    out.col(e) =
-        full_stress(solid.material, centre_stress(shape, columns(solid.nodes, nodes), c, columns(displacement, nodes)));
+    const Eigen::MatrixXd stress = all * centre_stress_matrix(shape, columns(solid.nodes, nodes), c);
+    for (Eigen::Index j = 0; j < stress.cols(); ++j)
+      for (Eigen::Index i = 0; i < 6; ++i)
+        if (stress(i, j) != 0.0) triplets.emplace_back(6 * e + i, nodes[j / d] * d + j % d, stress(i, j));
   });
-  return out;
+  return from_triplets(6 * n_elements(solid), solid.n_dofs(), triplets);
 }
 
 std::string missing_support(const Solid& solid, const std::vector<bool>& held)

@@ -54,9 +54,9 @@ enum class MassKind {
 /// M [kg], of all degrees of freedom.
 [[nodiscard]] SparseMatrix mass_matrix(const Solid& solid, MassKind kind);
 
-/// Stresses xx, yy, zz, xy, yz, zx at the centres of the elements, (6 x n_elements) [Pa].
-/// @param displacement  (dimension x n_nodes) [m]
-[[nodiscard]] Eigen::MatrixXd stresses(const Solid& solid, const Eigen::MatrixXd& displacement);
+/// Stresses xx, yy, zz, xy, yz, zx at the centres of the elements from displacements, (6 n_elements x n_dofs) [Pa/m]:
+/// those of an element one after the other.
+[[nodiscard]] SparseMatrix stress_matrix(const Solid& solid);
 
 /// Which rigid motion the given degrees of freedom leave free, in words that name the part of the body; "" if none.
 /// @param held  n_dofs, true where the displacement is given
