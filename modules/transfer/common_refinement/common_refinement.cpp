@@ -51,6 +51,7 @@ private:
     surface::OverlayAssembly assembly(fluid, structure, wanted.location, metric, mass, wanted.fluid_mass);
     const auto take = [&](const surface::Subelement& piece) { assembly.add(piece); };
     Pairing pairing;
+    pairing.keeps_force = metric == surface::Metric::source;
     if (fluid.dimension == 2) {
       surface::PolylineOverlayOptions overlay;
       overlay.feature_angle = options_.feature_angle * std::numbers::pi / 180.0;

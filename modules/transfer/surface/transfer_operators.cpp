@@ -29,7 +29,6 @@ TransferOperators operators_of_points(const SurfaceMesh& source, const SurfaceMe
   result.load = source_location == Location::nodes ? result.nodal_load
                                                    : load_operator(source, target, set.points, source_location);
   result.projection = node_projection(source, target, target_tree);
-  result.facial_mean = facial_mean(source, target, set.points, source_location);
   const bool is_same = mass == MassMetric::same;
   if (source_mass == SourceMass::factorised)
     result.source_mass = mass_matrix(is_same ? surface::source_mass(source, set.points) : native_mass(source));

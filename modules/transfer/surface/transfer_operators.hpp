@@ -28,7 +28,6 @@ struct TransferOperators {
   Operator load;              ///< B of the source's location
   Operator nodal_load;        ///< B of a nodal source: for the adjoint motion
   Operator projection;        ///< P, source nodes x target nodes
-  Operator facial_mean;       ///< target faces x source entities; 0 x 0 for node projection, which has no points
   MassMatrix source_mass;     ///< M_f; not solvable if it was not wanted
   MassMatrix target_mass;     ///< M_s
   bool is_projection = false; ///< B = P^T M_f: loads of nodes go to loads by P^T alone, and `interpolate` is `adjoint`

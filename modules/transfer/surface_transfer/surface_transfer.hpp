@@ -12,8 +12,10 @@
 
 #include <mullion/sdk/module.hpp>
 
-#include <optional>
+#include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace mullion::surface_transfer {
 
@@ -47,6 +49,7 @@ struct CommonOptions {
 struct Pairing {
   surface::TransferOperators operators;
   surface::OverlayReport report;
+  bool keeps_force = true; ///< to round-off: the integrals are taken on the fluid's surface
 };
 
 /// What the pairing is for.
@@ -61,10 +64,20 @@ struct Wanted {
                                                           const surface::SurfaceMesh& structure,
                                                           const surface::Operator& projection);
 
-/// How well the points of a quadrature meet the structure.
-[[nodiscard]] surface::OverlayReport report_of_points(const surface::SurfaceMesh& fluid,
-                                                      const surface::SurfaceMesh& structure,
-                                                      const surface::PointSet& set);
+/// The same of the points of a quadrature, as they come.
+class PointReport {
+public:
+  PointReport(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure);
+
+  void add(std::int32_t fluid_face, std::span<const surface::IntegrationPoint> points);
+  [[nodiscard]] surface::OverlayReport finish();
+
+private:
+  const surface::SurfaceMesh& fluid_;
+  const surface::SurfaceMesh& structure_;
+  surface::OverlayReport report_;
+  std::vector<bool> is_reached_; ///< the structure's nodes
+};
 
 class SurfaceTransfer : public Module {
 public:
@@ -91,7 +104,8 @@ protected:
 
 private:
   [[nodiscard]] surface::SurfaceMesh mesh_of(const std::string& window) const;
-  void report_misfit() const;
+  void report_misfit();
+  void report_defects(const surface::Balance& balance);
   [[nodiscard]] surface::FieldView fluid_traction() const;
   [[nodiscard]] surface::Field loads_on_structure() const;
   [[nodiscard]] surface::Field forces_on_fluid() const; ///< on its nodes [N]
@@ -103,6 +117,7 @@ private:
   Pairing pairing_;
   surface::Operator fluid_forces_; ///< the fluid's own nodal forces from its traction
   double fluid_measure_ = 0.0, structure_measure_ = 0.0;
+  bool has_reported_defects_ = false; ///< of this instance; one that takes over may say it again
   Field traction_, load_, force_, moment_, fluid_force_, fluid_moment_;
   Field measure_, fluid_measure_field_, coverage_, covered_fraction_, gap_, unmatched_, power_, fluid_power_;
   Field velocity_, displacement_;
