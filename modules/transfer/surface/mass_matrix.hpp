@@ -1,6 +1,7 @@
 // A mass matrix and its solver: what turns loads into a traction, and adjoint loads into a motion.
 #pragma once
 
+#include "mass_solver.hpp"
 #include "operators.hpp"
 
 #include <Eigen/SparseCholesky>
@@ -18,13 +19,13 @@ struct MassMatrix {
   Eigen::VectorXd row_sums;         ///< [m or m^2]
   std::vector<std::int32_t> pinned; ///< nodes without mass, ascending: solve() and recover() give them zero
   std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors; ///< up to largest_factorised nodes
-  Operator pinned_matrix;   ///< above: with ones for the pinned rows; solved by conjugate gradients
-  bool is_solvable = false; ///< all pivots, or all diagonal entries, are positive
+  ScaledMass scaled;                                                           ///< above, for conjugate gradients
+  bool is_solvable = false; ///< all pivots are positive, or a trial came to an end
 };
 
-/// Up to here a mass matrix is factorised; factors of a surface grow like N^1.5, so above conjugate gradients take
-/// over: mass matrices are so well conditioned that some fifty iterations reach round-off, whatever the size.
-inline constexpr std::int64_t largest_factorised = 200'000;
+/// Up to here a mass matrix is factorised; the factors of a surface grow faster than the surface, so above conjugate
+/// gradients take over. A matrix with which a trial of them fails is factorised all the same.
+inline constexpr std::int64_t largest_factorised = 20'000;
 
 /// Prepares a mass matrix for solve(). Nodes whose diagonal is below 1e-14 of the largest one have no mass (they lie
 /// beyond the other surface): they are pinned to zero.
