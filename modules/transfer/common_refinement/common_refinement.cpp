@@ -48,7 +48,8 @@ private:
                         : options_.metric == "target" ? surface::Metric::target
                                                       : surface::Metric::average;
     const auto mass = options_.mass == "same" ? surface::MassMetric::same : surface::MassMetric::native;
-    surface::OverlayAssembly assembly(fluid, structure, wanted.location, metric, mass, wanted.fluid_mass);
+    surface::OverlayAssembly assembly(fluid, structure, wanted.location, metric, mass, wanted.fluid_mass,
+                                      wanted.offsets);
     const auto take = [&](const surface::Subelement& piece) { assembly.add(piece); };
     Pairing pairing;
     pairing.keeps_force = metric == surface::Metric::source;

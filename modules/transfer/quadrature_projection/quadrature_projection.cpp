@@ -41,7 +41,7 @@ private:
   {
     const surface::FaceTree tree(structure, 0.0);
     surface::OverlayAssembly assembly(fluid, structure, wanted.location, surface::Metric::source,
-                                      surface::MassMetric::native, wanted.fluid_mass);
+                                      surface::MassMetric::native, wanted.fluid_mass, wanted.offsets);
     surface_transfer::PointReport report(fluid, structure);
     surface::for_each_quadrature_face(fluid, structure, tree, {options_.points, options_.adaptive, options_.tolerance},
                                       [&](std::int32_t face, auto points) {

@@ -92,17 +92,12 @@ Field adjoint_motion(const Operator& load_operator, const MassMatrix& source_mas
   return solve(source_mass, apply_transposed(load_operator, target_motion));
 }
 
-Field loads_from_loads(const Operator& load_operator, const MassMatrix& source_mass, const FieldView& source_loads)
-{
-  return apply(load_operator, solve(source_mass, source_loads));
-}
-
-Field loads_from_face_forces(const Operator& load_operator, const SurfaceMesh& source, const FieldView& face_forces)
+Field traction_of_face_forces(const SurfaceMesh& mesh, const FieldView& face_forces)
 {
   Field traction = Field::Zero(face_forces.rows(), face_forces.cols());
   for (Eigen::Index f = 0; f < face_forces.cols(); ++f)
-    if (const double measure = face_measure(source, f); measure > 0.0) traction.col(f) = face_forces.col(f) / measure;
-  return apply(load_operator, traction);
+    if (const double measure = face_measure(mesh, f); measure > 0.0) traction.col(f) = face_forces.col(f) / measure;
+  return traction;
 }
 
 } // namespace mullion::surface

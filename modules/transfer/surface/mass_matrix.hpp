@@ -59,17 +59,9 @@ enum class Recovery {
 [[nodiscard]] Field adjoint_motion(const Operator& load_operator, const MassMatrix& source_mass,
                                    const FieldView& target_motion);
 
-/// Loads to loads for a nodal source: t_f = M_f^-1 R_f, R_s = B t_f. The sum is kept because 1^T B = 1^T M_f.
+/// The traction of faces from their forces: t_e = F_e / A_e [Pa].
 ///
-/// @param source_mass  on the metric of B
-[[nodiscard]] Field loads_from_loads(const Operator& load_operator, const MassMatrix& source_mass,
-                                     const FieldView& source_loads);
-
-/// Loads to loads for a facial source: t_e = F_e / A_e, R_s = B t.
-///
-/// @param load_operator  B of a facial source
-/// @param face_forces    (components x source faces) [N]; the force of a face without area does not arrive
-[[nodiscard]] Field loads_from_face_forces(const Operator& load_operator, const SurfaceMesh& source,
-                                           const FieldView& face_forces);
+/// @param face_forces  (components x faces) [N]; the force of a face without area does not arrive
+[[nodiscard]] Field traction_of_face_forces(const SurfaceMesh& mesh, const FieldView& face_forces);
 
 } // namespace mullion::surface

@@ -8,11 +8,12 @@
 namespace mullion::surface {
 
 OverlayAssembly::OverlayAssembly(const SurfaceMesh& source, const SurfaceMesh& target, Location source_location,
-                                 Metric metric, MassMetric mass, SourceMass source_mass)
+                                 Metric metric, MassMetric mass, SourceMass source_mass, Offsets offsets)
     : source_(source), target_(target), location_(source_location), metric_(metric), mass_(mass),
       has_source_mass_(source_mass == SourceMass::factorised), nodal_(target.n_nodes(), source.n_nodes()),
       facial_(target.n_nodes(), source.n_faces()), source_mass_(source.n_nodes(), source.n_nodes()),
-      is_covered_(static_cast<std::size_t>(source.n_faces()), false)
+      has_links_(offsets == Offsets::rigid_link), nodal_link_(target.n_faces(), source.n_nodes()),
+      facial_link_(target.n_faces(), source.n_faces()), is_covered_(static_cast<std::size_t>(source.n_faces()), false)
 {
   if (mass != MassMetric::same) return;
   target_mass_begin_.push_back(0);
@@ -54,7 +55,7 @@ void OverlayAssembly::add_points(std::int32_t face, std::span<const IntegrationP
   is_covered_[static_cast<std::size_t>(face)] = true;
   const auto source_nodes = source_.face(face);
   const std::size_t n = source_nodes.size();
-  target_nodes_.clear(), local_.clear();
+  target_nodes_.clear(), local_.clear(), arms_.clear();
 
   // Few target nodes lie near a source face: a list is searched faster than anything cleverer.
   const auto column_of = [&](std::int32_t node) {
@@ -74,6 +75,11 @@ void OverlayAssembly::add_points(std::int32_t face, std::span<const IntegrationP
       const auto column = column_of(nodes[k]);
       for (std::size_t a = 0; a < n; ++a) local_[4 * column + a] += point.weight * nt[k] * ns[a];
     }
+    if (has_links_) {
+      const Point arm =
+          map_to_space(source_, face, point.source_xi) - map_to_space(target_, point.target_face, point.target_xi);
+      for (std::size_t a = 0; a < n; ++a) arms_.emplace_back(point.target_face, point.weight * ns[a] * arm);
+    }
     if (target_mass_.empty()) continue;
     auto* sum =
         &target_mass_[static_cast<std::size_t>(target_mass_begin_[static_cast<std::size_t>(point.target_face)])];
@@ -82,13 +88,20 @@ void OverlayAssembly::add_points(std::int32_t face, std::span<const IntegrationP
   }
   // A face that is covered by so little that no weights keep the first moments still keeps its force.
   const auto own = shape_integrals(source_, face);
+  std::array<double, 4> factors = {1.0, 1.0, 1.0, 1.0};
   if (metric_ == Metric::source)
     for (std::size_t a = 0; a < n; ++a) {
       double covered = 0.0;
       for (std::size_t column = 0; column < target_nodes_.size(); ++column) covered += local_[4 * column + a];
       const double factor = covered > 0.0 ? own[static_cast<Eigen::Index>(a)] / covered : 1.0;
       for (std::size_t column = 0; column < target_nodes_.size(); ++column) local_[4 * column + a] *= factor;
+      factors[a] = factor;
     }
+  for (std::size_t k = 0; k < arms_.size(); ++k) {
+    const auto& [target_face, arm] = arms_[k];
+    nodal_link_.add(target_face, source_nodes[k % n], factors[k % n] * arm);
+    if (location_ == Location::faces) facial_link_.add(target_face, face, factors[k % n] * arm);
+  }
   for (std::size_t column = 0; column < target_nodes_.size(); ++column) {
     double whole = 0.0; // the source's shape functions sum to one
     for (std::size_t a = 0; a < n; ++a) {
@@ -129,6 +142,11 @@ TransferOperators OverlayAssembly::finish(const FaceTree& target_tree)
     result.target_mass = mass_matrix(native_mass(target_));
   }
   result.projection = node_projection(source_, target_, target_tree);
+  if (has_links_) {
+    result.nodal_link = nodal_link_.finish(target_);
+    result.load_link = location_ == Location::nodes ? result.nodal_link : facial_link_.finish(target_);
+    result.motion_link = link_of_nodes(source_, target_, target_tree, result.projection);
+  }
   return result;
 }
 

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace mullion::surface {
@@ -22,7 +23,8 @@ namespace mullion::surface {
 class OverlayAssembly {
 public:
   OverlayAssembly(const SurfaceMesh& source, const SurfaceMesh& target, Location source_location, Metric metric,
-                  MassMetric mass, SourceMass source_mass = SourceMass::factorised);
+                  MassMetric mass, SourceMass source_mass = SourceMass::factorised,
+                  Offsets offsets = Offsets::left_out);
 
   void add(const Subelement& piece);
   /// All points of a source face that has no pieces. With native masses only: see operators_of_points().
@@ -44,7 +46,10 @@ private:
   std::vector<std::int32_t> target_nodes_; ///< that they touch
   std::vector<double> local_;              ///< their loads by source node and by target node
   OperatorSum nodal_, facial_, source_mass_;
-  std::vector<bool> is_covered_; ///< the source faces
+  bool has_links_;
+  RigidLinkSum nodal_link_, facial_link_;
+  std::vector<std::pair<std::int32_t, Point>> arms_; ///< of the source face at hand: target face, arm of each node
+  std::vector<bool> is_covered_;                     ///< the source faces
   /// On the metric of the points: of each target face its nodes by its nodes, those with b >= a.
   std::vector<double> target_mass_;
   std::vector<std::int64_t> target_mass_begin_;

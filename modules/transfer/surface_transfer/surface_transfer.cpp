@@ -142,7 +142,8 @@ void SurfaceTransfer::attach()
   const auto location = received_traction_.is_connected() ? surface::Location::faces : surface::Location::nodes;
   const bool needs_fluid_mass = options_.motion == "adjoint" || received_load_.is_connected();
   pairing_ = pair(fluid_mesh_, structure_mesh_,
-                  {location, needs_fluid_mass ? surface::SourceMass::factorised : surface::SourceMass::left_out});
+                  {location, needs_fluid_mass ? surface::SourceMass::factorised : surface::SourceMass::left_out,
+                   options_.offsets == "rigid_link" ? surface::Offsets::rigid_link : surface::Offsets::left_out});
   report_misfit();
   MULLION_REQUIRE(pairing_.operators.target_mass.is_solvable, Errc::numeric,
                   "the structure's mass matrix on the interface cannot be factorised; is its surface folded?");

@@ -23,6 +23,7 @@ namespace mullion::surface_transfer {
 struct CommonOptions {
   std::string recovery = "consistent";
   std::string motion = "interpolate";
+  std::string offsets = "none";
   double gap_tolerance = 2.0;
   std::string on_misfit = "error";
 
@@ -37,6 +38,11 @@ struct CommonOptions {
             "fluid nodes get the structure's motion where they lie on it (interpolate), or the one that makes the "
             "work of both sides equal (adjoint)",
             one_of("interpolate", "adjoint")),
+        parameter(
+            "offsets", &CommonOptions::offsets, "",
+            "what stands off from the structure: none (moved by what it is paired with) or rigid_link (turns with "
+            "the structure, and moments arrive whole; small rotations)",
+            one_of("none", "rigid_link")),
         parameter("gap_tolerance", &CommonOptions::gap_tolerance, "1",
                   "largest gap between the two surfaces, in mean face sizes; a quarter of it is a warning", above(0.0)),
         parameter("on_misfit", &CommonOptions::on_misfit, "",
@@ -56,6 +62,7 @@ struct Pairing {
 struct Wanted {
   surface::Location location;     ///< of the traction that the fluid exports
   surface::SourceMass fluid_mass; ///< is it needed?
+  surface::Offsets offsets;
 };
 
 /// How well projected nodes meet the structure, as an overlay would report it.
