@@ -48,9 +48,11 @@ private:
                         : options_.metric == "target" ? surface::Metric::target
                                                       : surface::Metric::average;
     const auto mass = options_.mass == "same" ? surface::MassMetric::same : surface::MassMetric::native;
-    surface::OverlayAssembly assembly(fluid, structure, wanted.location, metric, mass, wanted.fluid_mass);
+    surface::OverlayAssembly assembly(fluid, structure, wanted.location, metric, mass, wanted.fluid_mass,
+                                      wanted.offsets);
     const auto take = [&](const surface::Subelement& piece) { assembly.add(piece); };
     Pairing pairing;
+    pairing.keeps_force = metric == surface::Metric::source;
     if (fluid.dimension == 2) {
       surface::PolylineOverlayOptions overlay;
       overlay.feature_angle = options_.feature_angle * std::numbers::pi / 180.0;

@@ -4,7 +4,7 @@
 // points.
 #include "surface_transfer/surface_transfer.hpp"
 
-#include <cmath>
+#include "surface/overlay_operators.hpp"
 
 #include <mullion/sdk/plugin.hpp>
 
@@ -39,14 +39,16 @@ private:
   [[nodiscard]] Pairing pair(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure,
                              const surface_transfer::Wanted& wanted) const override
   {
-    Pairing pairing;
     const surface::FaceTree tree(structure, 0.0);
-    const auto set =
-        surface::quadrature_points(fluid, structure, tree, {options_.points, options_.adaptive, options_.tolerance});
-    pairing.operators = surface::operators_of_points(fluid, structure, tree, set, wanted.location,
-                                                     surface::MassMetric::native, wanted.fluid_mass);
-    pairing.report = surface_transfer::report_of_points(fluid, structure, set);
-    return pairing;
+    surface::OverlayAssembly assembly(fluid, structure, wanted.location, surface::Metric::source,
+                                      surface::MassMetric::native, wanted.fluid_mass, wanted.offsets);
+    surface_transfer::PointReport report(fluid, structure);
+    surface::for_each_quadrature_face(fluid, structure, tree, {options_.points, options_.adaptive, options_.tolerance},
+                                      [&](std::int32_t face, auto points) {
+                                        assembly.add_points(face, points);
+                                        report.add(face, points);
+                                      });
+    return {assembly.finish(tree), report.finish()};
   }
 
   Options options_;

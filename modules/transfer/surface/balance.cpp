@@ -40,13 +40,32 @@ double relative(double difference, double scale)
   return scale > 0.0 ? difference / scale : std::numeric_limits<double>::infinity();
 }
 
-/// "3 source faces (face 7 at (0.1, 0.2) m, …)"; the first three are named.
+/// "4 source faces (face 7 at (0.1, 0.2) m; …)"; the first three are named.
 template <typename Place> std::string named(const FaceList& list, const char* one, const char* several, Place place)
 {
   std::string text = words(list.count, " ", list.count == 1 ? one : several, " (");
   const std::size_t n_named = std::min<std::size_t>(list.first.size(), 3);
   for (std::size_t i = 0; i < n_named; ++i) text += (i == 0 ? "" : "; ") + place(list.first[i]);
   return text + (list.count > static_cast<std::int64_t>(n_named) ? "; …)" : ")");
+}
+
+/// "; 4 source faces (face 7 at (0.1, 0.2) m: 0.3 m; …)": those for which `excess` is positive, the largest first, with
+/// what `value` says of each; "" if there are none, as where the report holds no faces.
+template <typename Excess, typename Value>
+std::string worst_faces(const SurfaceMesh& source, const OverlayReport& report, Excess excess, Value value)
+{
+  FaceList worst;
+  std::vector<std::int32_t> found;
+  for (std::size_t f = 0; f < report.fit.size(); ++f)
+    if (excess(report.fit[f]) > 0.0) found.push_back(static_cast<std::int32_t>(f));
+  const auto excess_of = [&](std::int32_t f) { return excess(report.fit[static_cast<std::size_t>(f)]); };
+  std::stable_sort(found.begin(), found.end(),
+                   [&](std::int32_t a, std::int32_t b) { return excess_of(a) > excess_of(b); });
+  for (const auto f : found) worst.add(f);
+  if (worst.count == 0) return "";
+  return "; " + named(worst, "source face", "source faces", [&](std::int32_t f) {
+           return place_of_face(source, f) + ": " + value(report.fit[static_cast<std::size_t>(f)]);
+         });
 }
 
 } // namespace
@@ -65,7 +84,7 @@ Resultant resultant_of_traction(const SurfaceMesh& mesh, const FieldView& tracti
   const Point centre = mean_node(mesh);
   for (std::int64_t f = 0; f < mesh.n_faces(); ++f) {
     const auto nodes = mesh.face(f);
-    for (const auto& p : face_rule(nodes.size(), 2)) {
+    for (const auto& p : mass_rule(nodes.size())) {
       Point t = Point::Zero();
       if (location == Location::faces) t = in_space(traction, f);
       else {
@@ -86,11 +105,18 @@ double work_of(const FieldView& loads, const FieldView& motion)
   return sum;
 }
 
+double work_scale_of(const FieldView& loads, const FieldView& motion)
+{
+  double sum = 0.0;
+  for (Eigen::Index j = 0; j < loads.cols(); ++j) sum += in_space(loads, j).norm() * in_space(motion, j).norm();
+  return sum;
+}
+
 Defects defects_of(const Balance& b)
 {
   return {relative((b.target.force - b.source.force).norm(), b.source.force_scale),
           relative((b.target.moment - b.source.moment).norm(), b.source.moment_scale),
-          relative(std::abs(b.target_work - b.source_work), std::max(std::abs(b.target_work), std::abs(b.source_work))),
+          relative(std::abs(b.target_work - b.source_work), b.work_scale),
           relative(std::abs(b.target_measure - b.source_measure), b.source_measure)};
 }
 
@@ -106,31 +132,55 @@ Verdict judge(const SurfaceMesh& source, const SurfaceMesh& target, const Overla
   const auto target_node = [&](std::int32_t i) { return place_of_node(target, i); };
   const double h = std::max(mean_face_size(source), mean_face_size(target));
 
+  const auto gaps_above = [&](double limit) {
+    return worst_faces(
+        source, report, [&](const FaceFit& fit) { return fit.gap - limit; },
+        [](const FaceFit& fit) { return words(fit.gap, " m"); });
+  };
+  const auto overhangs_above = [&](double limit) {
+    return worst_faces(
+        source, report, [&](const FaceFit& fit) { return fit.overhang - limit; },
+        [](const FaceFit& fit) { return words(fit.overhang, " m"); });
+  };
+  const auto times = [](const FaceFit& fit) { return words(fit.coverage, " times"); };
+
   const double gap = relative(report.largest_gap, h), overhang = relative(report.largest_overhang, h);
   if (gap > tolerances.gap_error)
     fail("the surfaces are up to ", report.largest_gap, " m apart, ", gap, " faces; at most ", tolerances.gap_error,
-         " faces are sensible. Are both in the same coordinates?");
+         " faces are sensible", gaps_above(tolerances.gap_error * h), ". Are both in the same coordinates?");
   else if (gap > tolerances.gap_warning)
     warn("the surfaces are up to ", report.largest_gap, " m apart, ", gap, " faces; above ", tolerances.gap_warning,
-         " faces the transfer loses accuracy");
+         " faces the transfer loses accuracy", gaps_above(tolerances.gap_warning * h));
   if (overhang > tolerances.overhang_error)
     fail("the source reaches ", report.largest_overhang, " m beyond the target's end, ", overhang, " faces; at most ",
-         tolerances.overhang_error, " of a face is sensible");
+         tolerances.overhang_error, " of a face is sensible", overhangs_above(tolerances.overhang_error * h));
   else if (overhang > 0.0)
     warn("the source reaches ", report.largest_overhang, " m beyond the target's end; the force there goes to the end",
-         " node, whose traction is wrong");
+         " node, whose traction is wrong", overhangs_above(0.0));
   if (report.covered_fraction < tolerances.least_covered)
     fail("only ", 100.0 * report.covered_fraction, " % of the source has a counterpart, less than ",
-         100.0 * tolerances.least_covered, " %. Are both in the same unit, and do they face each other?");
+         100.0 * tolerances.least_covered, " %",
+         report.uncovered_faces.count > 0
+             ? "; without one: " + named(report.uncovered_faces, "source face", "source faces", source_face)
+             : worst_faces(
+                   source, report, [](const FaceFit& fit) { return 1.0 - fit.coverage; }, times),
+         ". Are both in the same unit, and do they face each other?");
   if (report.uncovered_faces.count > 0)
     warn(named(report.uncovered_faces, "source face", "source faces", source_face), " without a counterpart; ",
          100.0 * (1.0 - report.covered_fraction), " % of the source is not covered, and its force goes to the closest",
          " points");
   if (report.min_coverage < 1.0 - tolerances.coverage_slack || report.max_coverage > 1.0 + tolerances.coverage_slack)
-    warn("source faces are covered between ", report.min_coverage, " and ", report.max_coverage, " times; ",
-         report.partly_covered_faces.count == 0
-             ? std::string("all in full")
-             : named(report.partly_covered_faces, "source face", "source faces", source_face) + " in part");
+    warn(
+        "source faces are covered between ", report.min_coverage, " and ", report.max_coverage, " times",
+        worst_faces(
+            source, report,
+            [&](const FaceFit& fit) {
+              const bool is_partly = fit.coverage > 0.0 && fit.coverage < 1.0 - tolerances.coverage_slack;
+              return is_partly ? 1.0 - fit.coverage : 0.0;
+            },
+            times),
+        worst_faces(
+            source, report, [&](const FaceFit& fit) { return fit.coverage - 1.0 - tolerances.coverage_slack; }, times));
   if (report.unmatched_target_nodes.count > 0)
     warn(named(report.unmatched_target_nodes, "target node", "target nodes", target_node), " without a counterpart",
          report.target_covered_fraction < 1.0
@@ -158,20 +208,41 @@ Verdict judge(const SurfaceMesh& source, const SurfaceMesh& target, const Overla
   return verdict;
 }
 
-Verdict judge(const Balance& balance, bool keeps_work, const Tolerances& tolerances)
+std::vector<std::string> complaints_about(const Balance& balance, const Promises& promises,
+                                          const Tolerances& tolerances)
 {
-  Verdict verdict;
+  std::vector<std::string> complaints;
   const auto defects = defects_of(balance);
-  const auto place = [](const Point& p) { return words("(", p.x(), ", ", p.y(), ", ", p.z(), ")"); };
-  if (!(defects.force <= tolerances.force_error))
-    verdict.errors.push_back(words("the target receives the force ", place(balance.target.force),
-                                   " N, the source gives ", place(balance.source.force), " N: relative defect ",
-                                   defects.force, ", at most ", tolerances.force_error, " is round-off"));
-  if (keeps_work && !(defects.work <= tolerances.work_error))
-    verdict.errors.push_back(words("the loads do the work ", balance.target_work, " on the target and ",
-                                   balance.source_work, " on the source: relative defect ", defects.work, ", at most ",
-                                   tolerances.work_error, " is round-off"));
-  return verdict;
+  const auto vector = [](const Point& p) { return words("(", p.x(), ", ", p.y(), ", ", p.z(), ")"); };
+  if (promises.force && !(defects.force <= tolerances.force_error)) // nor if it is NaN
+    complaints.push_back(words("the target receives the force ", vector(balance.target.force), " N, the source gives ",
+                               vector(balance.source.force), " N: relative defect ", defects.force, ", at most ",
+                               tolerances.force_error, " is round-off"));
+  if (promises.work && !(defects.work <= tolerances.work_error))
+    complaints.push_back(words("the loads do the work ", balance.target_work, " on the target and ",
+                               balance.source_work, " on the source: relative defect ", defects.work, ", at most ",
+                               tolerances.work_error, " is round-off"));
+  return complaints;
+}
+
+std::string places_of_lost_force(const SurfaceMesh& source, const Operator& load, Location location,
+                                 const Tolerances& tolerances)
+{
+  const Operator own = location == Location::nodes ? native_mass(source) : face_split(source);
+  Eigen::VectorXd given = Eigen::VectorXd::Zero(load.cols()), arrived = given;
+  for (Eigen::Index row = 0; row < own.rows(); ++row)
+    for (Operator::InnerIterator it(own, row); it; ++it) given[it.col()] += it.value();
+  for (Eigen::Index row = 0; row < load.rows(); ++row)
+    for (Operator::InnerIterator it(load, row); it; ++it) arrived[it.col()] += it.value();
+  const double largest = given.size() == 0 ? 0.0 : given.maxCoeff();
+  FaceList places;
+  for (Eigen::Index i = 0; i < given.size(); ++i)
+    if (!(std::abs(arrived[i] - given[i]) <= tolerances.force_error * largest))
+      places.add(static_cast<std::int32_t>(i));
+  if (places.count == 0) return "";
+  if (location == Location::nodes)
+    return named(places, "source node", "source nodes", [&](std::int32_t i) { return place_of_node(source, i); });
+  return named(places, "source face", "source faces", [&](std::int32_t f) { return place_of_face(source, f); });
 }
 
 } // namespace mullion::surface

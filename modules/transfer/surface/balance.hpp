@@ -1,5 +1,5 @@
-// What a transfer keeps and what it does not: force, moment and work of both sides, and words for a user when the two
-// surfaces do not fit each other.
+// What a transfer keeps and what it does not: force, moment and work of both sides, and words for a user, with places,
+// when the two surfaces do not fit each other or something gets lost between them.
 #pragma once
 
 #include "operators.hpp"
@@ -30,10 +30,14 @@ struct Resultant {
 /// sum_j R_j . v_j: power of loads on velocities [W], or their work on displacements [J].
 [[nodiscard]] double work_of(const FieldView& loads, const FieldView& motion);
 
+/// sum_j |R_j| |v_j|: what a defect of work_of() is measured by [W or J]; the work itself may cancel.
+[[nodiscard]] double work_scale_of(const FieldView& loads, const FieldView& motion);
+
 /// Both sides of one transfer.
 struct Balance {
   Resultant source, target;
   double source_work = 0.0, target_work = 0.0;       ///< [W] or [J]
+  double work_scale = 0.0;                           ///< of the target [W] or [J]
   double source_measure = 0.0, target_measure = 0.0; ///< length [m] or area [m^2]
 };
 
@@ -41,7 +45,7 @@ struct Balance {
 struct Defects {
   double force = 0.0;   ///< |difference| / sum of the source's magnitudes
   double moment = 0.0;  ///< |difference| / the source's moment scale
-  double work = 0.0;    ///< |difference| / the larger of both
+  double work = 0.0;    ///< |difference| / the work scale
   double measure = 0.0; ///< |difference| / the source's
 };
 
@@ -67,9 +71,19 @@ struct Verdict {
 [[nodiscard]] Verdict judge(const SurfaceMesh& source, const SurfaceMesh& target, const OverlayReport& report,
                             const Tolerances& tolerances);
 
-/// Errors where force or work of a transfer are off by more than the tolerances.
-///
-/// @param keeps_work  the motion was transferred by the operator that is adjoint to the loads'
-[[nodiscard]] Verdict judge(const Balance& balance, bool keeps_work, const Tolerances& tolerances);
+/// What a transfer keeps to round-off.
+struct Promises {
+  bool force = true; ///< loads on the source's metric
+  bool work = false; ///< the motion is transferred by the operator that is adjoint to the loads'
+};
+
+/// What is promised and not kept, with both numbers; empty if all is well.
+[[nodiscard]] std::vector<std::string> complaints_about(const Balance& balance, const Promises& promises,
+                                                        const Tolerances& tolerances);
+
+/// Where force gets lost or made: nodes or faces of the source of which a unit traction does not arrive whole, the
+/// column of B against the integral of the source's own shape function. "" if there are none.
+[[nodiscard]] std::string places_of_lost_force(const SurfaceMesh& source, const Operator& load, Location location,
+                                               const Tolerances& tolerances);
 
 } // namespace mullion::surface

@@ -106,38 +106,84 @@ double add_piece(const SurfaceMesh& source, const SurfaceMesh& target, const Sub
   return measure;
 }
 
-std::vector<std::int32_t> faces_without_point(const SurfaceMesh& target, const std::vector<IntegrationPoint>& points)
-{
-  std::vector<bool> has_point(static_cast<std::size_t>(target.n_faces()), false);
-  for (const auto& p : points) has_point[index(p.target_face)] = true;
-  std::vector<std::int32_t> empty;
-  for (std::int32_t f = 0; f < target.n_faces(); ++f)
-    if (!has_point[index(f)]) empty.push_back(f);
-  return empty;
-}
+/// Which target faces have a point, and the loads of a unit traction: sum over the points of w N_j.
+struct Reached {
+  const SurfaceMesh& target;
+  std::vector<bool> has_point = std::vector<bool>(static_cast<std::size_t>(target.n_faces()), false);
+  std::vector<double> unit_load = std::vector<double>(static_cast<std::size_t>(target.n_nodes()), 0.0);
 
-/// Loads of a unit traction: sum over the points of w N_j.
-std::vector<double> unit_load(const SurfaceMesh& target, const std::vector<IntegrationPoint>& points)
-{
-  std::vector<double> load(static_cast<std::size_t>(target.n_nodes()), 0.0);
-  for (const auto& p : points) {
-    const auto nodes = target.face(p.target_face);
-    const auto n = shape_values(nodes.size(), p.target_xi);
-    for (std::size_t k = 0; k < nodes.size(); ++k) load[index(nodes[k])] += p.weight * n[k];
+  void add(std::span<const IntegrationPoint> points)
+  {
+    for (const auto& p : points) {
+      has_point[index(p.target_face)] = true;
+      const auto nodes = target.face(p.target_face);
+      const auto n = shape_values(nodes.size(), p.target_xi);
+      for (std::size_t k = 0; k < nodes.size(); ++k) unit_load[index(nodes[k])] += p.weight * n[k];
+    }
   }
-  return load;
+  [[nodiscard]] std::vector<std::int32_t> empty_faces() const
+  {
+    std::vector<std::int32_t> empty;
+    for (std::int32_t f = 0; f < target.n_faces(); ++f)
+      if (!has_point[index(f)]) empty.push_back(f);
+    return empty;
+  }
+};
+
+/// Points of all source faces, each face with its own order; only those of one face are kept at a time.
+void project(const SurfaceMesh& source, const FaceTree& target_tree, const std::vector<int>& order,
+             const PointSink& sink)
+{
+  std::vector<IntegrationPoint> points;
+  for (std::int32_t f = 0; f < source.n_faces(); ++f) {
+    points.clear();
+    if (add_closest_points(source, target_tree, f, order[index(f)], points)) sink(f, points);
+  }
 }
 
-/// Points of all source faces, each face with its own order.
-PointSet projected(const SurfaceMesh& source, const SurfaceMesh& target, const FaceTree& target_tree,
-                   const std::vector<int>& order)
+Reached reached(const SurfaceMesh& source, const SurfaceMesh& target, const FaceTree& target_tree,
+                const std::vector<int>& order)
 {
-  PointSet set;
-  set.coverage.assign(static_cast<std::size_t>(source.n_faces()), 0.0);
-  for (std::int32_t f = 0; f < source.n_faces(); ++f)
-    add_closest_points(source, target_tree, std::span(&f, 1), order[index(f)], set);
-  set.target_empty = faces_without_point(target, set.points);
-  return set;
+  Reached result{target};
+  project(source, target_tree, order, [&](std::int32_t, auto points) { result.add(points); });
+  return result;
+}
+
+/// Orders of the source faces, see QuadratureOptions.
+std::vector<int> orders(const SurfaceMesh& source, const SurfaceMesh& target, const FaceTree& target_tree,
+                        const QuadratureOptions& options)
+{
+  std::vector<int> order(static_cast<std::size_t>(source.n_faces()), options.n_points);
+  if (!options.is_adaptive) return order;
+
+  auto found = reached(source, target, target_tree, order);
+  const FaceTree source_tree(source);
+  for (;;) {
+    bool has_changed = false;
+    std::vector<bool> is_raised(order.size(), false);
+    for (const auto f : found.empty_faces()) {
+      const auto beside = source_tree.closest(face_centre(target, f)).face;
+      if (beside >= 0 && order[index(beside)] < largest_order) is_raised[index(beside)] = has_changed = true;
+    }
+    for (std::size_t f = 0; f < order.size(); ++f)
+      if (is_raised[f]) order[f] = std::min(2 * order[f], largest_order);
+    if (!has_changed) break;
+    auto finer = reached(source, target, target_tree, order);
+    found.has_point = std::move(finer.has_point), found.unit_load = std::move(finer.unit_load);
+  }
+
+  while (options.tolerance > 0.0 && *std::min_element(order.begin(), order.end()) < largest_order) {
+    for (auto& n : order) n = std::min(2 * n, largest_order);
+    auto finer = reached(source, target, target_tree, order);
+    double change = 0.0, largest = 0.0;
+    for (std::size_t j = 0; j < finer.unit_load.size(); ++j) {
+      change = std::max(change, std::abs(finer.unit_load[j] - found.unit_load[j]));
+      largest = std::max(largest, std::abs(finer.unit_load[j]));
+    }
+    found.unit_load = std::move(finer.unit_load);
+    if (change < options.tolerance * largest) break;
+  }
+  return order;
 }
 
 } // namespace
@@ -146,7 +192,7 @@ Eigen::Vector4d shape_integrals(const SurfaceMesh& mesh, std::int32_t face)
 {
   const auto n = mesh.face(face).size();
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-  for (const auto& p : face_rule(n, 2)) {
+  for (const auto& p : mass_rule(n)) {
     const auto values = shape_values(n, p.xi);
     for (std::size_t k = 0; k < n; ++k)
       sum[static_cast<Eigen::Index>(k)] += p.weight * measure_density(mesh, face, p.xi) * values[k];
@@ -189,13 +235,13 @@ bool keep_first_moments(const SurfaceMesh& source, std::int32_t face, std::span<
 double add_points_of_face(const SurfaceMesh& source, const SurfaceMesh& target, std::span<const Subelement> pieces,
                           Metric metric, std::vector<IntegrationPoint>& points)
 {
-  static const Rule segment = gauss_rule(2), triangle = face_rule(3, 2), six = triangle_rule_of_degree_4();
+  static const Rule six = triangle_rule_of_degree_4();
   const auto face = pieces.front().source_face;
   const std::size_t first_point = points.size();
   double measure = 0.0;
   for (const auto& piece : pieces) {
     const bool has_quadrilateral = source.face(face).size() == 4 || target.face(piece.target_face).size() == 4;
-    const auto& rule = piece.n_vertices == 2 ? segment : has_quadrilateral ? six : triangle;
+    const auto& rule = piece.n_vertices == 2 ? mass_rule(2) : has_quadrilateral ? six : mass_rule(3);
     measure += add_piece(source, target, piece, rule, metric, points);
   }
   const double own = face_measure(source, face);
@@ -224,65 +270,52 @@ PointSet points_of_overlay(const SurfaceMesh& source, const SurfaceMesh& target,
         add_points_of_face(source, target, pieces.subspan(begin, end - begin), metric, set.points);
     begin = end;
   }
-  set.target_empty = faces_without_point(target, set.points);
+  Reached found{target};
+  found.add(set.points);
+  set.target_empty = found.empty_faces();
   return set;
 }
 
-void add_closest_points(const SurfaceMesh& source, const FaceTree& target_tree,
-                        std::span<const std::int32_t> source_faces, int n, PointSet& set)
+bool add_closest_points(const SurfaceMesh& source, const FaceTree& target_tree, std::int32_t face, int n,
+                        std::vector<IntegrationPoint>& points)
 {
-  for (const auto f : source_faces) {
-    double measure = 0.0;
-    const std::size_t first_point = set.points.size();
-    for (const auto& p : face_rule(source.face(f).size(), n)) {
-      const double weight = p.weight * measure_density(source, f, p.xi);
-      const auto closest = target_tree.closest(map_to_space(source, f, p.xi));
-      measure += weight;
-      set.points.push_back({f, closest.face, {p.xi[0], p.xi[1]}, {closest.xi[0], closest.xi[1]}, weight});
-    }
-    if (!(measure > 0.0)) { // a degenerate face carries nothing
-      set.points.resize(first_point);
-      continue;
-    }
-    // Only a rule that is too coarse for a warped quadrilateral differs from the face's own measure.
-    for (std::size_t i = first_point; i < set.points.size(); ++i)
-      set.points[i].weight *= face_measure(source, f) / measure;
-    set.coverage[index(f)] = 1.0;
+  double measure = 0.0;
+  const std::size_t first_point = points.size();
+  const auto n_nodes = source.face(face).size();
+  for (const auto& p : n == 2 ? mass_rule(n_nodes) : face_rule(n_nodes, n)) {
+    const double weight = p.weight * measure_density(source, face, p.xi);
+    const auto closest = target_tree.closest(map_to_space(source, face, p.xi));
+    measure += weight;
+    points.push_back({face, closest.face, {p.xi[0], p.xi[1]}, {closest.xi[0], closest.xi[1]}, weight});
   }
+  if (!(measure > 0.0)) {
+    points.resize(first_point);
+    return false;
+  }
+  // Only a rule that is too coarse for a warped quadrilateral differs from the face's own measure.
+  const double factor = face_measure(source, face) / measure;
+  for (std::size_t i = first_point; i < points.size(); ++i) points[i].weight *= factor;
+  return true;
+}
+
+void for_each_quadrature_face(const SurfaceMesh& source, const SurfaceMesh& target, const FaceTree& target_tree,
+                              const QuadratureOptions& options, const PointSink& sink)
+{
+  project(source, target_tree, orders(source, target, target_tree, options), sink);
 }
 
 PointSet quadrature_points(const SurfaceMesh& source, const SurfaceMesh& target, const FaceTree& target_tree,
                            const QuadratureOptions& options)
 {
-  std::vector<int> order(static_cast<std::size_t>(source.n_faces()), options.n_points);
-  auto set = projected(source, target, target_tree, order);
-  if (!options.is_adaptive) return set;
-
-  const FaceTree source_tree(source);
-  for (bool has_changed = true; has_changed && !set.target_empty.empty();) {
-    has_changed = false;
-    std::vector<bool> is_raised(order.size(), false);
-    for (const auto f : set.target_empty) {
-      const auto beside = source_tree.closest(face_centre(target, f)).face;
-      if (beside >= 0 && order[index(beside)] < largest_order) is_raised[index(beside)] = has_changed = true;
-    }
-    for (std::size_t f = 0; f < order.size(); ++f)
-      if (is_raised[f]) order[f] = std::min(2 * order[f], largest_order);
-    if (has_changed) set = projected(source, target, target_tree, order);
-  }
-
-  while (options.tolerance > 0.0 && *std::min_element(order.begin(), order.end()) < largest_order) {
-    for (auto& n : order) n = std::min(2 * n, largest_order);
-    auto finer = projected(source, target, target_tree, order);
-    const auto before = unit_load(target, set.points), after = unit_load(target, finer.points);
-    double change = 0.0, largest = 0.0;
-    for (std::size_t j = 0; j < after.size(); ++j) {
-      change = std::max(change, std::abs(after[j] - before[j]));
-      largest = std::max(largest, std::abs(after[j]));
-    }
-    set = std::move(finer);
-    if (change < options.tolerance * largest) break;
-  }
+  PointSet set;
+  Reached found{target};
+  set.coverage.assign(static_cast<std::size_t>(source.n_faces()), 0.0);
+  for_each_quadrature_face(source, target, target_tree, options, [&](std::int32_t face, auto points) {
+    set.points.insert(set.points.end(), points.begin(), points.end());
+    set.coverage[index(face)] = 1.0;
+    found.add(points);
+  });
+  set.target_empty = found.empty_faces();
   return set;
 }
 

@@ -7,6 +7,7 @@
 #include "surface_mesh.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -51,13 +52,18 @@ struct PointSet {
 double add_points_of_face(const SurfaceMesh& source, const SurfaceMesh& target, std::span<const Subelement> pieces,
                           Metric metric, std::vector<IntegrationPoint>& points);
 
-/// Appends the points of these source faces, n a direction, each with the closest point of the target, to a set.
-void add_closest_points(const SurfaceMesh& source, const FaceTree& target_tree,
-                        std::span<const std::int32_t> source_faces, int n, PointSet& set);
+/// Appends the points of a source face, n a direction, each with the closest point of the target.
+///
+/// @return  false: the face has no measure and gets no points
+bool add_closest_points(const SurfaceMesh& source, const FaceTree& target_tree, std::int32_t face, int n,
+                        std::vector<IntegrationPoint>& points);
+
+/// Receives the points of one source face.
+using PointSink = std::function<void(std::int32_t face, std::span<const IntegrationPoint> points)>;
 
 struct QuadratureOptions {
   int n_points = 2;         ///< Gauss points a direction on each source face, 1 to 64
-  bool is_adaptive = false; ///< more where needed: see quadrature_points()
+  bool is_adaptive = false; ///< more where needed: see below
   double tolerance = 0.0;   ///< of the adaptive order; 0: only the rule of one point a target face
 };
 
@@ -70,6 +76,12 @@ struct QuadratureOptions {
 /// value. The kinks of the target's shape functions within a source face make this slow: the error falls with 1/n^2.
 ///
 /// @pre  1 <= n_points <= 64
+///
+/// @param sink  gets the points of each source face that has a measure, ascending; they are gone after the call
+void for_each_quadrature_face(const SurfaceMesh& source, const SurfaceMesh& target, const FaceTree& target_tree,
+                              const QuadratureOptions& options, const PointSink& sink);
+
+/// The same, all points at once: for a small mesh.
 [[nodiscard]] PointSet quadrature_points(const SurfaceMesh& source, const SurfaceMesh& target,
                                          const FaceTree& target_tree, const QuadratureOptions& options);
 

@@ -1,11 +1,28 @@
 #include "mass_matrix.hpp"
 
-#include <Eigen/IterativeLinearSolvers>
-
 #include <algorithm>
 #include <utility>
 
 namespace mullion::surface {
+
+namespace {
+
+/// The matrix with ones for the pinned rows.
+Operator with_ones(const Operator& matrix, const std::vector<bool>& is_pinned)
+{
+  OperatorSum sum(matrix.rows(), matrix.cols());
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    const auto row = static_cast<std::int32_t>(i);
+    if (is_pinned[static_cast<std::size_t>(i)]) sum.add(row, row, 1.0);
+    else
+      for (Operator::InnerIterator it(matrix, i); it; ++it)
+        if (!is_pinned[static_cast<std::size_t>(it.col())])
+          sum.add(row, static_cast<std::int32_t>(it.col()), it.value());
+  }
+  return sum.finish();
+}
+
+} // namespace
 
 MassMatrix mass_matrix(Operator matrix)
 {
@@ -28,22 +45,16 @@ MassMatrix mass_matrix(Operator matrix)
       mass.pinned.push_back(static_cast<std::int32_t>(i));
     }
 
-  std::vector<Entry> entries; // of the matrix with ones for the pinned rows
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto row = static_cast<std::int32_t>(i);
-    if (is_pinned[static_cast<std::size_t>(i)]) entries.push_back({row, row, 1.0});
-    else
-      for (Operator::InnerIterator it(matrix, i); it; ++it)
-        if (!is_pinned[static_cast<std::size_t>(it.col())])
-          entries.push_back({row, static_cast<std::int32_t>(it.col()), it.value()});
+  if (n > largest_factorised) {
+    mass.scaled = scaled_mass(matrix, is_pinned);
+    Eigen::MatrixXd trial(1, n), solution; // of all wave lengths
+    for (Eigen::Index i = 0; i < n; ++i) trial(0, i) = diagonal[static_cast<std::size_t>(i)] * ((i * i) % 7 - 3.0);
+    mass.is_solvable = conjugate_gradients(mass.scaled, trial, solution);
   }
-  auto pinned = assembled(n, n, entries);
-  if (n <= largest_factorised) {
-    mass.factors = std::make_unique<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>(pinned);
+  if (!mass.is_solvable) {
+    mass.scaled = {};
+    mass.factors = std::make_unique<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>(with_ones(matrix, is_pinned));
     mass.is_solvable = mass.factors->info() == Eigen::Success && (mass.factors->vectorD().array() > 0.0).all();
-  } else {
-    mass.pinned_matrix = std::move(pinned);
-    mass.is_solvable = largest > 0.0;
   }
   mass.matrix = std::move(matrix);
   return mass;
@@ -51,20 +62,15 @@ MassMatrix mass_matrix(Operator matrix)
 
 Field solve(const MassMatrix& mass, const FieldView& loads)
 {
-  constexpr double round_off = 1e-15;
-  constexpr int most_iterations = 500; // fifty are usual; slivers need more
-  Eigen::ConjugateGradient<Operator, Eigen::Lower | Eigen::Upper> iterative;
-  if (mass.factors == nullptr) {
-    iterative.setTolerance(round_off);
-    iterative.setMaxIterations(most_iterations);
-    iterative.compute(mass.pinned_matrix);
-  }
   Field out(loads.rows(), loads.cols());
+  if (mass.factors == nullptr) {
+    (void)conjugate_gradients(mass.scaled, loads, out); // tried before: what is not finite stays so
+    return out;
+  }
   for (Eigen::Index c = 0; c < loads.rows(); ++c) {
     Eigen::VectorXd rhs = loads.row(c).transpose();
     for (const auto node : mass.pinned) rhs[node] = 0.0;
-    if (mass.factors != nullptr) out.row(c) = mass.factors->solve(rhs).transpose();
-    else out.row(c) = iterative.solve(rhs).transpose();
+    out.row(c) = mass.factors->solve(rhs).transpose();
   }
   return out;
 }
@@ -86,17 +92,12 @@ Field adjoint_motion(const Operator& load_operator, const MassMatrix& source_mas
   return solve(source_mass, apply_transposed(load_operator, target_motion));
 }
 
-Field loads_from_loads(const Operator& load_operator, const MassMatrix& source_mass, const FieldView& source_loads)
-{
-  return apply(load_operator, solve(source_mass, source_loads));
-}
-
-Field loads_from_face_forces(const Operator& load_operator, const SurfaceMesh& source, const FieldView& face_forces)
+Field traction_of_face_forces(const SurfaceMesh& mesh, const FieldView& face_forces)
 {
   Field traction = Field::Zero(face_forces.rows(), face_forces.cols());
   for (Eigen::Index f = 0; f < face_forces.cols(); ++f)
-    if (const double measure = face_measure(source, f); measure > 0.0) traction.col(f) = face_forces.col(f) / measure;
-  return apply(load_operator, traction);
+    if (const double measure = face_measure(mesh, f); measure > 0.0) traction.col(f) = face_forces.col(f) / measure;
+  return traction;
 }
 
 } // namespace mullion::surface

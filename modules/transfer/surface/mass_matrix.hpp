@@ -1,6 +1,7 @@
 // A mass matrix and its solver: what turns loads into a traction, and adjoint loads into a motion.
 #pragma once
 
+#include "mass_solver.hpp"
 #include "operators.hpp"
 
 #include <Eigen/SparseCholesky>
@@ -18,13 +19,13 @@ struct MassMatrix {
   Eigen::VectorXd row_sums;         ///< [m or m^2]
   std::vector<std::int32_t> pinned; ///< nodes without mass, ascending: solve() and recover() give them zero
   std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors; ///< up to largest_factorised nodes
-  Operator pinned_matrix;   ///< above: with ones for the pinned rows; solved by conjugate gradients
-  bool is_solvable = false; ///< all pivots, or all diagonal entries, are positive
+  ScaledMass scaled;                                                           ///< above, for conjugate gradients
+  bool is_solvable = false; ///< all pivots are positive, or a trial came to an end
 };
 
-/// Up to here a mass matrix is factorised; factors of a surface grow like N^1.5, so above conjugate gradients take
-/// over: mass matrices are so well conditioned that some fifty iterations reach round-off, whatever the size.
-inline constexpr std::int64_t largest_factorised = 200'000;
+/// Up to here a mass matrix is factorised; the factors of a surface grow faster than the surface, so above conjugate
+/// gradients take over. A matrix with which a trial of them fails is factorised all the same.
+inline constexpr std::int64_t largest_factorised = 20'000;
 
 /// Prepares a mass matrix for solve(). Nodes whose diagonal is below 1e-14 of the largest one have no mass (they lie
 /// beyond the other surface): they are pinned to zero.
@@ -58,17 +59,9 @@ enum class Recovery {
 [[nodiscard]] Field adjoint_motion(const Operator& load_operator, const MassMatrix& source_mass,
                                    const FieldView& target_motion);
 
-/// Loads to loads for a nodal source: t_f = M_f^-1 R_f, R_s = B t_f. The sum is kept because 1^T B = 1^T M_f.
+/// The traction of faces from their forces: t_e = F_e / A_e [Pa].
 ///
-/// @param source_mass  on the metric of B
-[[nodiscard]] Field loads_from_loads(const Operator& load_operator, const MassMatrix& source_mass,
-                                     const FieldView& source_loads);
-
-/// Loads to loads for a facial source: t_e = F_e / A_e, R_s = B t.
-///
-/// @param load_operator  B of a facial source
-/// @param face_forces    (components x source faces) [N]; the force of a face without area does not arrive
-[[nodiscard]] Field loads_from_face_forces(const Operator& load_operator, const SurfaceMesh& source,
-                                           const FieldView& face_forces);
+/// @param face_forces  (components x faces) [N]; the force of a face without area does not arrive
+[[nodiscard]] Field traction_of_face_forces(const SurfaceMesh& mesh, const FieldView& face_forces);
 
 } // namespace mullion::surface

@@ -1,9 +1,10 @@
-// The matrices of a transfer: load operators, interpolation of motion, mass matrices and facial means, from pairs of
-// integration points or from projected nodes. Sparse, by rows, and the same to the bit however often they are built.
+// The matrices of a transfer: load operators, interpolation of motion and mass matrices, from pairs of integration
+// points or from projected nodes. Sparse, by rows, and the same to the bit however often they are built.
 #pragma once
 
 #include "aabb_tree.hpp"
 #include "integration_points.hpp"
+#include "operator_sum.hpp"
 #include "surface_mesh.hpp"
 
 #include <Eigen/Core>
@@ -14,9 +15,6 @@
 #include <vector>
 
 namespace mullion::surface {
-
-/// Rows are what is written, columns what is read.
-using Operator = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// A field on one side: (components x entities), one entity a column.
 using Field = Eigen::MatrixXd;
@@ -31,7 +29,7 @@ struct Entry {
   double value;
 };
 
-/// The matrix that is the sum of its terms. Terms of one place are added in the order given.
+/// The matrix that is the sum of its terms, see OperatorSum.
 [[nodiscard]] Operator assembled(std::int64_t n_rows, std::int64_t n_columns, std::span<const Entry> entries);
 
 /// B, which makes the loads of a target's nodes from a traction: R = B t.
@@ -54,13 +52,6 @@ struct Entry {
 /// integral N_i N_k over the mesh itself, by a rule that is exact on lines, triangles and plane quadrilaterals (two
 /// points a direction).
 [[nodiscard]] Operator native_mass(const SurfaceMesh& mesh);
-
-/// Means over the target's faces of a source field, (1/A) integral t_f, with A the measure of the face's points. Rows
-/// of target faces without a point are zero.
-///
-/// @return  (target faces x source nodes or faces) [1]
-[[nodiscard]] Operator facial_mean(const SurfaceMesh& source, const SurfaceMesh& target,
-                                   std::span<const IntegrationPoint> points, Location source_location);
 
 /// P by closest points: P_ij = N_s^j at the point of the target that is closest to source node i.
 ///

@@ -29,10 +29,9 @@ struct Sides {
 /// Pieces and lists as they are collected, in no order yet.
 struct Collected {
   std::vector<Subelement> pieces;
-  std::vector<double> covered;        ///< of each source face: share with a counterpart
+  std::vector<FaceFit> fit;           ///< of each source face; coverage is the share with a counterpart
   std::vector<double> target_covered; ///< of each target face: share that a source reaches
   std::vector<std::int32_t> missed_source, missed_target;
-  double largest_gap = 0.0, largest_overhang = 0.0;
 };
 
 constexpr double negligible_share = 1e-6; // of a face: an end that is missed by less is round-off of the meshes
@@ -75,11 +74,11 @@ void collect(const Path& source, const Path& target, const PathEnds& ends, Colle
 
     const bool is_clamped = b.source <= map.covered_from || a.source >= map.covered_to;
     if (is_clamped) continue;
-    out.covered[index(piece.source_face)] += std::max(source_share, 0.0);
+    auto& fit = out.fit[index(piece.source_face)];
+    fit.coverage += std::max(source_share, 0.0);
     if (source_share > 0.0) out.target_covered[index(piece.target_face)] += std::max(target_share, 0.0);
     for (const auto& point : {a, b})
-      out.largest_gap =
-          std::max(out.largest_gap, (point_at(source, point.source) - point_at(target, point.target)).norm());
+      fit.gap = std::max(fit.gap, (point_at(source, point.source) - point_at(target, point.target)).norm());
   }
 
   const double size = source.arc.back() / static_cast<double>(source.n_faces());
@@ -90,7 +89,11 @@ void collect(const Path& source, const Path& target, const PathEnds& ends, Colle
       const double end = place < map.covered_from ? map.covered_from : map.covered_to;
       const double overhang = (source.x[i] - point_at(source, end)).norm();
       if (overhang <= negligible_share * size) continue;
-      out.largest_overhang = std::max(out.largest_overhang, overhang);
+      for (const auto k : {i, i + 1}) // the faces before and behind the node
+        if (k >= 1 && k <= source.n_faces()) {
+          auto& fit = out.fit[index(source.faces[k - 1])];
+          fit.overhang = std::max(fit.overhang, overhang);
+        }
     }
     out.missed_source.push_back(source.nodes[i]);
   }
@@ -255,8 +258,7 @@ OverlayReport report_on(const Sides& sides, const Collected& found, const Polyli
                         const PolylineNodes& target_nodes)
 {
   OverlayReport report;
-  report.largest_gap = found.largest_gap;
-  report.largest_overhang = found.largest_overhang;
+  report.fit = found.fit;
   report.is_opposite =
       sides.is_opposite ? *sides.is_opposite : normals_oppose(sides.source, sides.target, sides.target_tree);
   report.skipped_source_faces = listed(degenerate_faces(sides.source));
@@ -275,8 +277,11 @@ OverlayReport report_on(const Sides& sides, const Collected& found, const Polyli
   const auto skipped = degenerate_faces(sides.source);
   double covered = 0.0;
   for (std::int32_t f = 0; f < sides.source.n_faces(); ++f) {
-    const double share = found.covered[index(f)];
+    const auto& fit = found.fit[index(f)];
+    const double share = fit.coverage;
     covered += share * face_measure(sides.source, f);
+    report.largest_gap = std::max(report.largest_gap, fit.gap);
+    report.largest_overhang = std::max(report.largest_overhang, fit.overhang);
     if (std::binary_search(skipped.begin(), skipped.end(), f)) continue;
     report.min_coverage = std::min(report.min_coverage, share);
     report.max_coverage = std::max(report.max_coverage, share);
@@ -320,7 +325,7 @@ OverlayReport overlay_polylines(const SurfaceMesh& source, const SurfaceMesh& ta
     for (const auto f : sides.target_chains[c].faces) sides.chain_of_target_face[index(f)] = c;
 
   Collected found;
-  found.covered.resize(static_cast<std::size_t>(source.n_faces()), 0.0);
+  found.fit.resize(static_cast<std::size_t>(source.n_faces()), {.coverage = 0.0});
   found.target_covered.resize(static_cast<std::size_t>(target.n_faces()), 0.0);
   for (const auto& chain : sides.source_chains) collect_chain(sides, chain, found);
 

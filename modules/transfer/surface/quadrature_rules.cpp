@@ -51,6 +51,12 @@ Rule face_rule(std::size_t n_nodes, int n)
   return rule;
 }
 
+const Rule& mass_rule(std::size_t n_nodes)
+{
+  static const Rule line = face_rule(2, 2), triangle = face_rule(3, 2), quadrilateral = face_rule(4, 2);
+  return n_nodes == 2 ? line : n_nodes == 3 ? triangle : quadrilateral;
+}
+
 Rule triangle_rule_of_degree_4()
 {
   // Two orbits of three points (1 - 2 a, a, a); a and the weights solve the moment equations up to degree 4.

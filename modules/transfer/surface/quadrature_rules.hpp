@@ -26,6 +26,10 @@ using Rule = std::vector<RulePoint>;
 /// from n = 3 the square collapsed into the triangle, exact to degree 2 n - 2.
 [[nodiscard]] Rule face_rule(std::size_t n_nodes, int n);
 
+/// face_rule(n_nodes, 2), which integrates products of shape functions exactly; kept, for it is asked for on every
+/// face.
+[[nodiscard]] const Rule& mass_rule(std::size_t n_nodes);
+
 /// Six points on a triangle, exact to degree 4 (Dunavant 1985).
 [[nodiscard]] Rule triangle_rule_of_degree_4();
 

@@ -35,8 +35,16 @@ struct FaceList {
   }
 };
 
+/// How a source face meets the target.
+struct FaceFit {
+  double coverage = 1.0; ///< overlaid measure / own measure, before any scaling; 0: no counterpart
+  double gap = 0.0;      ///< largest between its paired points [m]
+  double overhang = 0.0; ///< by which it reaches beyond the target's end [m]
+};
+
 /// How well two surfaces cover each other, before any scaling.
 struct OverlayReport {
+  std::vector<FaceFit> fit;             ///< of each source face, for messages that name places; may be left out
   double min_coverage = 1.0;            ///< over the source faces: overlaid measure / own measure
   double max_coverage = 1.0;            ///< the same, largest
   double largest_gap = 0.0;             ///< between paired points [m]

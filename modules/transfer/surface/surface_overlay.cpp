@@ -190,15 +190,14 @@ public:
   /// What the last call of overlay() found.
   [[nodiscard]] const std::vector<Subelement>& pieces() const { return pieces_; }
 
-  /// Count the pieces of overlay() in.
-  void accept()
+  /// Count the pieces of overlay() in. @return their largest gap [m]
+  double accept()
   {
-    largest_gap_ = std::max(largest_gap_, gap_of_face_);
     target_area_ += target_area_of_face_;
     for (const auto& piece : pieces_)
       for (const auto node : target_.mesh.face(piece.target_face)) is_reached_[static_cast<std::size_t>(node)] = 1;
+    return gap_of_face_;
   }
-  [[nodiscard]] double largest_gap() const { return largest_gap_; }
   [[nodiscard]] double target_area() const { return target_area_; }
   [[nodiscard]] const std::vector<std::uint8_t>& is_reached() const { return is_reached_; }
 
@@ -266,7 +265,7 @@ private:
   std::vector<std::int32_t> candidates_;
   std::vector<Subelement> pieces_;
   double gap_of_face_ = 0.0, target_area_of_face_ = 0.0;
-  double largest_gap_ = 0.0, target_area_ = 0.0;
+  double target_area_ = 0.0;
   std::vector<std::uint8_t> is_reached_;
 };
 
@@ -292,6 +291,7 @@ OverlayReport overlay_surfaces(const SurfaceMesh& source, const SurfaceMesh& tar
   Overlay overlay(source, side, gap_tolerance);
   double area = 0.0, covered_area = 0.0, target_area = 0.0;
   bool is_first = true;
+  report.fit.resize(static_cast<std::size_t>(source.n_faces()));
   for (std::int32_t f = 0; f < source.n_faces(); ++f) {
     const bool is_degenerate = std::binary_search(degenerate_source.begin(), degenerate_source.end(), f);
     const PlaneFace face = is_degenerate ? PlaneFace{} : plane_face(source, f, source_normals);
@@ -301,14 +301,17 @@ OverlayReport overlay_surfaces(const SurfaceMesh& source, const SurfaceMesh& tar
     }
     const double own_area = 0.5 * twice_area_vector(source, f).norm();
     double coverage = overlay.overlay(f, face);
+    auto& fit = report.fit[static_cast<std::size_t>(f)];
     if (coverage < least_coverage) {
       coverage = 0.0;
       report.uncovered_faces.add(f);
     } else {
       if (coverage < full_coverage) report.partly_covered_faces.add(f);
-      overlay.accept();
+      fit.gap = overlay.accept();
+      report.largest_gap = std::max(report.largest_gap, fit.gap);
       for (const auto& piece : overlay.pieces()) sink(piece);
     }
+    fit.coverage = coverage;
     report.min_coverage = is_first ? coverage : std::min(report.min_coverage, coverage);
     report.max_coverage = is_first ? coverage : std::max(report.max_coverage, coverage);
     is_first = false;
@@ -317,7 +320,6 @@ OverlayReport overlay_surfaces(const SurfaceMesh& source, const SurfaceMesh& tar
   }
 
   for (std::int32_t t = 0; t < target.n_faces(); ++t) target_area += 0.5 * twice_area_vector(target, t).norm();
-  report.largest_gap = overlay.largest_gap();
   report.covered_fraction = area > 0.0 ? covered_area / area : 0.0;
   report.target_covered_fraction = target_area > 0.0 ? overlay.target_area() / target_area : 0.0;
   for (std::int32_t i = 0; i < target.n_nodes(); ++i)

@@ -7,6 +7,7 @@
 #include "integration_points.hpp"
 #include "mass_matrix.hpp"
 #include "operators.hpp"
+#include "rigid_link.hpp"
 
 namespace mullion::surface {
 
@@ -28,7 +29,9 @@ struct TransferOperators {
   Operator load;              ///< B of the source's location
   Operator nodal_load;        ///< B of a nodal source: for the adjoint motion
   Operator projection;        ///< P, source nodes x target nodes
-  Operator facial_mean;       ///< target faces x source entities; 0 x 0 for node projection, which has no points
+  RigidLink load_link;        ///< what offsets add to `load`; empty if they are left out
+  RigidLink nodal_link;       ///< to `nodal_load`
+  RigidLink motion_link;      ///< to `projection`
   MassMatrix source_mass;     ///< M_f; not solvable if it was not wanted
   MassMatrix target_mass;     ///< M_s
   bool is_projection = false; ///< B = P^T M_f: loads of nodes go to loads by P^T alone, and `interpolate` is `adjoint`
@@ -37,10 +40,20 @@ struct TransferOperators {
 /// Is M_f factorised? Adjoint motion and loads from nodal loads need it; it is a third of the memory.
 enum class SourceMass { factorised, left_out };
 
+/// What becomes of the distance between paired points.
+enum class Offsets {
+  left_out,  ///< motion and loads go from point to point
+  rigid_link ///< as if over a rigid arm: rigid rotations and moments arrive whole
+};
+
 /// Node projection (P of node_projection()) and nearest neighbours (P of nearest_nodes()), with native masses.
 [[nodiscard]] TransferOperators operators_of_projection(const SurfaceMesh& source, const SurfaceMesh& target,
                                                         Operator projection, Location source_location,
                                                         SourceMass source_mass = SourceMass::factorised);
+
+/// Adds the links to operators of a projection.
+void add_rigid_links(TransferOperators& operators, const SurfaceMesh& source, const SurfaceMesh& target,
+                     const FaceTree& target_tree);
 
 /// Common refinement and quadrature projection, from their points.
 ///

@@ -4,6 +4,8 @@
 
 #include "surface_transfer/surface_transfer.hpp"
 
+#include <utility>
+
 namespace mullion::surface_transfer {
 
 /// @tparam project  P (fluid nodes x structure nodes) [1] of two meshes
@@ -20,8 +22,10 @@ private:
                              const Wanted& wanted) const override
   {
     const auto projection = project(fluid, structure);
-    return {surface::operators_of_projection(fluid, structure, projection, wanted.location, wanted.fluid_mass),
-            report_of_projection(fluid, structure, projection)};
+    auto operators = surface::operators_of_projection(fluid, structure, projection, wanted.location, wanted.fluid_mass);
+    if (wanted.offsets == surface::Offsets::rigid_link)
+      surface::add_rigid_links(operators, fluid, structure, surface::FaceTree(structure, 0.0));
+    return {std::move(operators), report_of_projection(fluid, structure, projection)};
   }
 };
 

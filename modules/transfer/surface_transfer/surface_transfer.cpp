@@ -3,6 +3,7 @@
 #include "surface/shape_functions.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace mullion::surface_transfer {
 
@@ -19,6 +20,8 @@ surface::OverlayReport report_of_projection(const SurfaceMesh& fluid, const Surf
                                             const surface::Operator& projection)
 {
   surface::OverlayReport report;
+  report.fit.resize(static_cast<std::size_t>(fluid.n_faces()));
+  std::vector<double> gaps(static_cast<std::size_t>(fluid.n_nodes()), 0.0);
   std::vector<bool> is_reached(static_cast<std::size_t>(structure.n_nodes()), false);
   for (int row = 0; row < projection.outerSize(); ++row) {
     surface::Point place = surface::Point::Zero();
@@ -26,28 +29,41 @@ surface::OverlayReport report_of_projection(const SurfaceMesh& fluid, const Surf
       if (entry.value() != 0.0) is_reached[static_cast<std::size_t>(entry.col())] = true;
       place += entry.value() * surface::node_position(structure, entry.col());
     }
-    report.largest_gap = std::max(report.largest_gap, (place - surface::node_position(fluid, row)).norm());
+    gaps[static_cast<std::size_t>(row)] = (place - surface::node_position(fluid, row)).norm();
+  }
+  for (std::int64_t f = 0; f < fluid.n_faces(); ++f) {
+    auto& gap = report.fit[static_cast<std::size_t>(f)].gap;
+    for (const auto node : fluid.face(f)) gap = std::max(gap, gaps[static_cast<std::size_t>(node)]);
+    report.largest_gap = std::max(report.largest_gap, gap);
   }
   for (std::size_t node = 0; node < is_reached.size(); ++node)
     if (!is_reached[node]) report.unmatched_target_nodes.add(static_cast<std::int32_t>(node));
   return report;
 }
 
-surface::OverlayReport report_of_points(const SurfaceMesh& fluid, const SurfaceMesh& structure,
-                                        const surface::PointSet& set)
+PointReport::PointReport(const SurfaceMesh& fluid, const SurfaceMesh& structure)
+    : fluid_(fluid), structure_(structure), is_reached_(static_cast<std::size_t>(structure.n_nodes()), false)
 {
-  surface::OverlayReport report;
-  for (const auto& point : set.points) {
-    const auto here = surface::map_to_space(fluid, point.source_face, point.source_xi);
-    const auto there = surface::map_to_space(structure, point.target_face, point.target_xi);
-    report.largest_gap = std::max(report.largest_gap, (here - there).norm());
+  report_.fit.resize(static_cast<std::size_t>(fluid.n_faces()));
+}
+
+void PointReport::add(std::int32_t fluid_face, std::span<const surface::IntegrationPoint> points)
+{
+  double& gap = report_.fit[static_cast<std::size_t>(fluid_face)].gap;
+  for (const auto& point : points) {
+    const auto here = surface::map_to_space(fluid_, point.source_face, point.source_xi);
+    const auto there = surface::map_to_space(structure_, point.target_face, point.target_xi);
+    gap = std::max(gap, (here - there).norm());
+    for (const auto node : structure_.face(point.target_face)) is_reached_[static_cast<std::size_t>(node)] = true;
   }
-  std::vector<bool> is_reached(static_cast<std::size_t>(structure.n_nodes()), false);
-  for (const auto& point : set.points)
-    for (const auto node : structure.face(point.target_face)) is_reached[static_cast<std::size_t>(node)] = true;
-  for (std::size_t node = 0; node < is_reached.size(); ++node)
-    if (!is_reached[node]) report.unmatched_target_nodes.add(static_cast<std::int32_t>(node));
-  return report;
+  report_.largest_gap = std::max(report_.largest_gap, gap);
+}
+
+surface::OverlayReport PointReport::finish()
+{
+  for (std::size_t node = 0; node < is_reached_.size(); ++node)
+    if (!is_reached_[node]) report_.unmatched_target_nodes.add(static_cast<std::int32_t>(node));
+  return std::move(report_);
 }
 
 std::vector<FieldSpec> SurfaceTransfer::fields()
@@ -126,7 +142,8 @@ void SurfaceTransfer::attach()
   const auto location = received_traction_.is_connected() ? surface::Location::faces : surface::Location::nodes;
   const bool needs_fluid_mass = options_.motion == "adjoint" || received_load_.is_connected();
   pairing_ = pair(fluid_mesh_, structure_mesh_,
-                  {location, needs_fluid_mass ? surface::SourceMass::factorised : surface::SourceMass::left_out});
+                  {location, needs_fluid_mass ? surface::SourceMass::factorised : surface::SourceMass::left_out,
+                   options_.offsets == "rigid_link" ? surface::Offsets::rigid_link : surface::Offsets::left_out});
   report_misfit();
   MULLION_REQUIRE(pairing_.operators.target_mass.is_solvable, Errc::numeric,
                   "the structure's mass matrix on the interface cannot be factorised; is its surface folded?");
@@ -146,7 +163,7 @@ SurfaceMesh SurfaceTransfer::mesh_of(const std::string& window) const
   return mesh;
 }
 
-void SurfaceTransfer::report_misfit() const
+void SurfaceTransfer::report_misfit()
 {
   surface::Tolerances tolerances;
   tolerances.gap_error = options_.gap_tolerance;
@@ -161,6 +178,25 @@ void SurfaceTransfer::report_misfit() const
   }
   verdict.warnings.insert(verdict.warnings.end(), verdict.errors.begin(), verdict.errors.end());
   for (const auto& warning : verdict.warnings) log().warning("{}", warning);
+  std::vector<surface::FaceFit>().swap(pairing_.report.fit); // the places have been named
+}
+
+void SurfaceTransfer::report_defects(const surface::Balance& balance)
+{
+  if (has_reported_defects_) return;
+  const auto& operators = pairing_.operators;
+  // Of facial values the fluid's nodes feel an equal share, which is what only the projections hand on.
+  const bool has_adjoint_motion = operators.is_projection || (options_.motion == "adjoint" &&
+                                                              operators.source_location == surface::Location::nodes);
+  const surface::Tolerances tolerances;
+  const auto complaints = surface::complaints_about(
+      balance, {.force = pairing_.keeps_force, .work = pairing_.keeps_force && has_adjoint_motion}, tolerances);
+  if (complaints.empty()) return;
+  has_reported_defects_ = true;
+  const auto places = surface::places_of_lost_force(fluid_mesh_, operators.load, operators.source_location, tolerances);
+  for (const auto& complaint : complaints)
+    log().warning("{}{} (said once; history.csv has every step)", complaint,
+                  places.empty() ? std::string() : "; the loads of " + places + " do not arrive whole");
 }
 
 // ---- loads -------------------------------------------------------------------------------------------------------
@@ -194,23 +230,26 @@ surface::Resultant SurfaceTransfer::fluid_resultant() const
 void SurfaceTransfer::loads(const TimeStep& step)
 {
   const surface::Field loads = loads_on_structure();
+  surface::Balance balance;
   load_.now() = loads;
   traction_.now() =
       surface::recover(pairing_.operators.target_mass, loads,
                        options_.recovery == "consistent" ? surface::Recovery::consistent : surface::Recovery::lumped);
-  const auto received = surface::resultant_of_loads(structure_mesh_, loads), given = fluid_resultant();
+  balance.target = surface::resultant_of_loads(structure_mesh_, loads);
+  balance.source = fluid_resultant();
   const auto n = structure_mesh_.dimension;
-  force_.now().col(0) = received.force.head(n), fluid_force_.now().col(0) = given.force.head(n);
-  moment_.now().col(0) = received.moment, fluid_moment_.now().col(0) = given.moment;
+  force_.now().col(0) = balance.target.force.head(n), fluid_force_.now().col(0) = balance.source.force.head(n);
+  moment_.now().col(0) = balance.target.moment, fluid_moment_.now().col(0) = balance.source.moment;
 
   const auto& motion = received_velocity_.is_connected() ? received_velocity_ : received_displacement_;
   const bool is_first_exchange = step.index == 0; // loads go first there, no motion was sent yet
   if (motion.is_connected() && !is_first_exchange) {
-    power_.now()(0, 0) = surface::work_of(loads, view(motion.newest()));
-    fluid_power_.now()(0, 0) = surface::work_of(forces_on_fluid(), motion_of_fluid(motion.newest()));
-  } else {
-    power_.now()(0, 0) = fluid_power_.now()(0, 0) = 0.0;
+    balance.target_work = surface::work_of(loads, view(motion.newest()));
+    balance.source_work = surface::work_of(forces_on_fluid(), motion_of_fluid(motion.newest()));
+    balance.work_scale = surface::work_scale_of(loads, view(motion.newest()));
   }
+  power_.now()(0, 0) = balance.target_work, fluid_power_.now()(0, 0) = balance.source_work;
+  report_defects(balance);
 
   measure_.now()(0, 0) = structure_measure_;
   fluid_measure_field_.now()(0, 0) = fluid_measure_;

@@ -12,8 +12,10 @@
 
 #include <mullion/sdk/module.hpp>
 
-#include <optional>
+#include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace mullion::surface_transfer {
 
@@ -21,6 +23,7 @@ namespace mullion::surface_transfer {
 struct CommonOptions {
   std::string recovery = "consistent";
   std::string motion = "interpolate";
+  std::string offsets = "none";
   double gap_tolerance = 2.0;
   std::string on_misfit = "error";
 
@@ -35,6 +38,11 @@ struct CommonOptions {
             "fluid nodes get the structure's motion where they lie on it (interpolate), or the one that makes the "
             "work of both sides equal (adjoint)",
             one_of("interpolate", "adjoint")),
+        parameter(
+            "offsets", &CommonOptions::offsets, "",
+            "what stands off from the structure: none (moved by what it is paired with) or rigid_link (turns with "
+            "the structure, and moments arrive whole; small rotations)",
+            one_of("none", "rigid_link")),
         parameter("gap_tolerance", &CommonOptions::gap_tolerance, "1",
                   "largest gap between the two surfaces, in mean face sizes; a quarter of it is a warning", above(0.0)),
         parameter("on_misfit", &CommonOptions::on_misfit, "",
@@ -47,12 +55,14 @@ struct CommonOptions {
 struct Pairing {
   surface::TransferOperators operators;
   surface::OverlayReport report;
+  bool keeps_force = true; ///< to round-off: the integrals are taken on the fluid's surface
 };
 
 /// What the pairing is for.
 struct Wanted {
   surface::Location location;     ///< of the traction that the fluid exports
   surface::SourceMass fluid_mass; ///< is it needed?
+  surface::Offsets offsets;
 };
 
 /// How well projected nodes meet the structure, as an overlay would report it.
@@ -61,10 +71,20 @@ struct Wanted {
                                                           const surface::SurfaceMesh& structure,
                                                           const surface::Operator& projection);
 
-/// How well the points of a quadrature meet the structure.
-[[nodiscard]] surface::OverlayReport report_of_points(const surface::SurfaceMesh& fluid,
-                                                      const surface::SurfaceMesh& structure,
-                                                      const surface::PointSet& set);
+/// The same of the points of a quadrature, as they come.
+class PointReport {
+public:
+  PointReport(const surface::SurfaceMesh& fluid, const surface::SurfaceMesh& structure);
+
+  void add(std::int32_t fluid_face, std::span<const surface::IntegrationPoint> points);
+  [[nodiscard]] surface::OverlayReport finish();
+
+private:
+  const surface::SurfaceMesh& fluid_;
+  const surface::SurfaceMesh& structure_;
+  surface::OverlayReport report_;
+  std::vector<bool> is_reached_; ///< the structure's nodes
+};
 
 class SurfaceTransfer : public Module {
 public:
@@ -91,7 +111,8 @@ protected:
 
 private:
   [[nodiscard]] surface::SurfaceMesh mesh_of(const std::string& window) const;
-  void report_misfit() const;
+  void report_misfit();
+  void report_defects(const surface::Balance& balance);
   [[nodiscard]] surface::FieldView fluid_traction() const;
   [[nodiscard]] surface::Field loads_on_structure() const;
   [[nodiscard]] surface::Field forces_on_fluid() const; ///< on its nodes [N]
@@ -103,6 +124,7 @@ private:
   Pairing pairing_;
   surface::Operator fluid_forces_; ///< the fluid's own nodal forces from its traction
   double fluid_measure_ = 0.0, structure_measure_ = 0.0;
+  bool has_reported_defects_ = false; ///< of this instance; one that takes over may say it again
   Field traction_, load_, force_, moment_, fluid_force_, fluid_moment_;
   Field measure_, fluid_measure_field_, coverage_, covered_fraction_, gap_, unmatched_, power_, fluid_power_;
   Field velocity_, displacement_;
