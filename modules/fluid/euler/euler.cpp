@@ -382,7 +382,7 @@ void Euler::step(const TimeStep& step)
     const int n = options_.substeps;
     const double dt = step.dt / n;
     if (is_moving) v_end_ = node_velocity_.at(step.begin);
-    else if (placed_ != coordinates) place(coordinates);
+    else place(coordinates);
     for (int m = 1; m <= n; ++m) {
       const double begin = step.begin + (m - 1) * dt;
       Outcome<2> outcome;
@@ -413,7 +413,7 @@ void Euler::step(const TimeStep& step)
 
 void Euler::iterate(const TimeStep& step, const NodeArray& nodes, StepSums& sums)
 {
-  if (placed_ != nodes) place(nodes);
+  place(nodes);
   const auto done = (step.index - 1) * options_.iterations_per_step;
   double& first = first_residual_.now()(0, 0);
   for (int i = 0; i < options_.iterations_per_step; ++i) {
@@ -429,6 +429,7 @@ void Euler::iterate(const TimeStep& step, const NodeArray& nodes, StepSums& sums
 
 void Euler::place(const NodeArray& nodes)
 {
+  if (placed_.cols() == nodes.cols() && placed_ == nodes) return;
   require(solver_->place(nodes), nodes, 0.0);
   placed_ = nodes;
 }
@@ -489,9 +490,11 @@ void Euler::write_outputs(const TimeStep&, const StepSums& sums, const NodeArray
   const auto& mesh = solver_->mesh();
   auto density = density_.now(), velocity = velocity_.now(), pressure = pressure_.now(), mach = mach_.now();
   const NodeArray nodes = coordinates;
+  const bool is_placed = placed_.cols() == nodes.cols(); // the solver's geometry is that of these nodes
   for (std::size_t c = 0; c < mesh.n_cells; ++c) {
     const Index e = mesh.order[c];
-    const auto w = primitive<2>(scheme_.gas, amounts_[c], cell_shape(mesh, nodes, c).volume);
+    const double area = is_placed ? solver_->geometry().volume[c] : cell_shape(mesh, nodes, c).volume; // the same bits
+    const auto w = primitive<2>(scheme_.gas, amounts_[c], area);
     density(0, e) = w[0];
     velocity(0, e) = w[1];
     velocity(1, e) = w[2];
@@ -558,7 +561,7 @@ void Euler::write_outputs(const TimeStep&, const StepSums& sums, const NodeArray
 double Euler::max_dt()
 {
   const NodeArray nodes = coordinates_.committed();
-  if (placed_ != nodes) place(nodes);
+  place(nodes);
   read_amounts(true);
   return courant_max_ * solver_->unit_step(amounts_);
 }

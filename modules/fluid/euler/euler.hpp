@@ -160,7 +160,7 @@ private:
   void read_amounts(bool committed);
   void write_amounts();
   void iterate(const TimeStep& step, const NodeArray& nodes, StepSums& sums);
-  void place(const NodeArray& nodes);
+  void place(const NodeArray& nodes); ///< unless the resting mesh is there already
   void write_outputs(const TimeStep& step, const StepSums& sums, const NodeArray& wall_velocity);
   void add_substep(StepSums& sums, double part) const;
   void require(const Outcome<2>& outcome, const NodeArray& nodes, double dt) const;
