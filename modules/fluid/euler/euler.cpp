@@ -231,10 +231,6 @@ void Euler::build(const MeshSource<2>& source)
   const auto& mesh = solver_->mesh();
   wall_faces_ = wall_faces_of(mesh, patches_.n_moving);
   amounts_.resize(mesh.n_cells);
-  bool has_triangles = false;
-  for (const auto& block : source.blocks) has_triangles = has_triangles || block.shape == Shape::triangle3;
-  courant_max_ = options_.cfl_max > 0.0 ? options_.cfl_max : has_triangles ? 0.9 : 1.35;
-  courant_warn_ = options_.cfl_warn > 0.0 ? options_.cfl_warn : has_triangles ? 0.85 : 1.25;
   const auto outcome = solver_->place(source.nodes);
   MULLION_REQUIRE(outcome.kind == Outcome<2>::Kind::fine, Errc::shape,
                   "{} has an area of {} m^2: a cell needs some, and its nodes go round it counterclockwise",
@@ -402,7 +398,7 @@ void Euler::step(const TimeStep& step)
     const int n = options_.substeps;
     const double dt = step.dt / n;
     if (is_moving) v_end_ = node_velocity_.at(step.begin);
-    else if (placed_ != coordinates) place(coordinates);
+    else place(coordinates);
     for (int m = 1; m <= n; ++m) {
       const double begin = step.begin + (m - 1) * dt;
       Outcome<2> outcome;
@@ -410,9 +406,9 @@ void Euler::step(const TimeStep& step)
         v_begin_.swap(v_end_);
         v_end_ = node_velocity_.at(m == n ? step.end : step.begin + m * dt);
         v_mean_ = 0.5 * (v_begin_ + v_end_);
-        outcome = solver_->advance_moving(amounts_, begin, dt, coordinates, v_mean_, courant_max_);
+        outcome = solver_->advance_moving(amounts_, begin, dt, coordinates, v_mean_, options_.cfl_max);
       } else {
-        outcome = solver_->advance(amounts_, begin, dt, coordinates, courant_max_);
+        outcome = solver_->advance(amounts_, begin, dt, coordinates, options_.cfl_max);
       }
       require(outcome, coordinates, dt);
       sums.courant = std::max(sums.courant, outcome.courant);
@@ -449,7 +445,7 @@ void Euler::settle(double t)
 
 void Euler::iterate(const TimeStep& step, const NodeArray& nodes, StepSums& sums)
 {
-  if (placed_ != nodes) place(nodes);
+  place(nodes);
   const auto done = (step.index - 1) * options_.iterations_per_step;
   double& first = first_residual_.now()(0, 0);
   for (int i = 0; i < options_.iterations_per_step; ++i) {
@@ -465,6 +461,7 @@ void Euler::iterate(const TimeStep& step, const NodeArray& nodes, StepSums& sums
 
 void Euler::place(const NodeArray& nodes)
 {
+  if (placed_.cols() == nodes.cols() && placed_ == nodes) return;
   require(solver_->place(nodes), nodes, 0.0);
   placed_ = nodes;
 }
@@ -498,18 +495,19 @@ void Euler::require(const Outcome<2>& outcome, const NodeArray& nodes, double dt
 {
   using OutcomeKind = Outcome<2>::Kind;
   if (outcome.kind == OutcomeKind::fine) {
-    if (outcome.courant > courant_warn_ && dt > 0.0 && !has_warned_) {
+    if (outcome.courant > options_.cfl_warn && dt > 0.0 && !has_warned_) {
       has_warned_ = true;
       log().warning("Courant number {:.3g} in {}; beyond {:.3g} the run ends", outcome.courant,
-                    place_of(outcome.courant_cell, nodes), courant_max_);
+                    place_of(outcome.courant_cell, nodes), options_.cfl_max);
     }
     return;
   }
   const auto where = place_of(outcome.cell, nodes);
   if (outcome.kind == OutcomeKind::courant)
-    throw Error(Errc::numeric, fmt::format("{} has a Courant number of {:.4g}, the limit is {:.4g}; take a step below "
-                                           "{:.4g} s, or more substeps",
-                                           where, outcome.courant, courant_max_, dt * courant_max_ / outcome.courant));
+    throw Error(Errc::numeric,
+                fmt::format("{} has a Courant number of {:.4g}, the limit is {:.4g}; take a step below "
+                            "{:.4g} s, or more substeps",
+                            where, outcome.courant, options_.cfl_max, dt * options_.cfl_max / outcome.courant));
   if (outcome.kind == OutcomeKind::cell_shape)
     throw Error(Errc::numeric, fmt::format("{} is turned over: area {:.4g} m^2; smaller steps, or another mesh motion",
                                            where, outcome.value));
@@ -525,9 +523,11 @@ void Euler::write_outputs(const TimeStep&, const StepSums& sums, const NodeArray
   const auto& mesh = solver_->mesh();
   auto density = density_.now(), velocity = velocity_.now(), pressure = pressure_.now(), mach = mach_.now();
   const NodeArray nodes = coordinates;
+  const bool is_placed = placed_.cols() == nodes.cols(); // the solver's geometry is that of these nodes
   for (std::size_t c = 0; c < mesh.n_cells; ++c) {
     const Index e = mesh.order[c];
-    const auto w = primitive<2>(scheme_.gas, amounts_[c], cell_shape(mesh, nodes, c).volume);
+    const double area = is_placed ? solver_->geometry().volume[c] : cell_shape(mesh, nodes, c).volume; // the same bits
+    const auto w = primitive<2>(scheme_.gas, amounts_[c], area);
     density(0, e) = w[0];
     velocity(0, e) = w[1];
     velocity(1, e) = w[2];
@@ -595,9 +595,9 @@ void Euler::write_outputs(const TimeStep&, const StepSums& sums, const NodeArray
 double Euler::max_dt()
 {
   const NodeArray nodes = coordinates_.committed();
-  if (placed_ != nodes) place(nodes);
+  place(nodes);
   read_amounts(true);
-  return courant_max_ * solver_->unit_step(amounts_);
+  return options_.cfl_max * solver_->unit_step(amounts_);
 }
 
 } // namespace mullion::euler

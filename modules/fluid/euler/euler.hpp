@@ -33,7 +33,7 @@ public:
     double limiter_k = 5.0, limiter_length = 1.0;
     std::string time_stepping = "global";
     int substeps = 1;
-    double cfl_warn = 0.0, cfl_max = 0.0, cfl = 1.2;
+    double cfl_warn = 1.25, cfl_max = 1.35, cfl = 1.2;
     int steady_iterations = 0, first_order_iterations = 0, iterations_per_step = 1;
     std::string gradient = "second_order", wall_velocity = "end";
     int threads = 1;
@@ -105,10 +105,8 @@ public:
           parameter("time_stepping", &O::time_stepping, "",
                     "one time step for all cells, or each its own, towards a steady state", one_of("global", "local")),
           parameter("substeps", &O::substeps, "1", "fluid steps within one coupling step", at_least(1)),
-          parameter("cfl_warn", &O::cfl_warn, "1",
-                    "Courant number from which there is a warning; 0: 1.25, with triangles 0.85", at_least(0.0)),
-          parameter("cfl_max", &O::cfl_max, "1",
-                    "Courant number beyond which the run ends; 0: 1.35, with triangles 0.9", at_least(0.0)),
+          parameter("cfl_warn", &O::cfl_warn, "1", "Courant number from which there is a warning", above(0.0)),
+          parameter("cfl_max", &O::cfl_max, "1", "Courant number beyond which the run ends", above(0.0)),
           parameter("cfl", &O::cfl, "1", "local time steps: Courant number of each cell", above(0.0)),
           parameter("steady_iterations", &O::steady_iterations, "1",
                     "so many with local time steps before the run, on the mesh at rest: it starts from a steady flow",
@@ -168,7 +166,7 @@ private:
   void read_amounts(bool committed);
   void write_amounts();
   void iterate(const TimeStep& step, const NodeArray& nodes, StepSums& sums);
-  void place(const NodeArray& nodes);
+  void place(const NodeArray& nodes); ///< unless the resting mesh is there already
   void write_outputs(const TimeStep& step, const StepSums& sums, const NodeArray& wall_velocity);
   void add_substep(StepSums& sums, double part) const;
   void require(const Outcome<2>& outcome, const NodeArray& nodes, double dt) const;
@@ -178,7 +176,6 @@ private:
   Patches patches_;
   Scheme<2> scheme_;
   Values<2> free_stream_{};
-  double courant_warn_ = 0.0, courant_max_ = 0.0;
 
   std::unique_ptr<Solver<2>> solver_;
   std::vector<Index> wall_faces_;      ///< numbers of boundary faces, in the window's order

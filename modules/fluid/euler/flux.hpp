@@ -10,6 +10,7 @@
 namespace mullion::euler {
 
 enum class Flux { hllc, roe };
+enum class Width { best, baseline };
 
 /// States on both sides of up to `capacity` faces, (rho, u, p), and the fluxes between them.
 template <int D> struct FaceBatch {
@@ -30,7 +31,10 @@ template <int D> struct FaceBatch {
 ///     F   = F(w_K) - s w_K on the side where s lies beyond the outer wave, else of the star state on its side
 ///
 /// toro2009 section 10.4, batten1997.
-template <int D> void hllc_fluxes(const Gas& gas, FaceBatch<D>& batch, std::size_t n);
+///
+/// @param width  which vector instructions: the widest that there are, or those that every processor has. The bits of
+///               the result are the same; for tests.
+template <int D> void hllc_fluxes(const Gas& gas, FaceBatch<D>& batch, std::size_t n, Width width = Width::best);
 
 /// Roe's flux difference splitting, |u - s -+ c| rounded below 0.05 c~ (roe1981, harten1983).
 template <int D> void roe_fluxes(const Gas& gas, FaceBatch<D>& batch, std::size_t n);

@@ -19,7 +19,7 @@ template <int D> struct LimiterOptions {
   Values<D> reference{}; ///< of each variable: density, speed, pressure
 };
 
-template <int D> using Gradient = std::array<std::array<double, D>, n_values<D>>; ///< of (rho, u, p)
+template <int D> using Gradient = std::array<Values<D>, D>; ///< of (rho, u, p): d/dx, d/dy, …
 
 /// How far the values of the stencil lie below and above the cell's own.
 template <int D> struct Spread {
@@ -30,11 +30,9 @@ template <int D> struct Spread {
 template <int D>
 inline Values<D> value_at(const Values<D>& w, const Gradient<D>& gradient, const std::array<double, D>& offset)
 {
-  Values<D> face;
-  for (std::size_t v = 0; v < w.size(); ++v) {
-    face[v] = w[v];
-    for (int d = 0; d < D; ++d) face[v] += gradient[v][d] * offset[d];
-  }
+  Values<D> face = w;
+  for (int d = 0; d < D; ++d)
+    for (std::size_t v = 0; v < w.size(); ++v) face[v] += gradient[d][v] * offset[d];
   return is_gas<D>(face) ? face : w;
 }
 
@@ -48,8 +46,9 @@ inline Values<D> value_at(const Values<D>& w, const Gradient<D>& gradient, const
 ///
 /// @param offset  offset(k): from the centroid to the middle of the cell's k-th face, as an array of D numbers
 template <int D, class Offset>
-inline void limit_gradient(const LimiterOptions<D>& options, double volume, const Spread<D>& spread,
-                           std::size_t n_faces, const Offset& offset, Gradient<D>& gradient)
+[[gnu::always_inline]] inline void limit_gradient(const LimiterOptions<D>& options, double volume,
+                                                  const Spread<D>& spread, std::size_t n_faces, const Offset& offset,
+                                                  Gradient<D>& gradient)
 {
   constexpr std::size_t n = n_values<D>;
   Values<D> factor, smooth;
@@ -63,23 +62,26 @@ inline void limit_gradient(const LimiterOptions<D>& options, double volume, cons
   const bool is_smooth = options.limiter == Limiter::venkatakrishnan;
   for (std::size_t k = 0; k < n_faces; ++k) {
     const std::array<double, D>& to_face = offset(k);
-    for (std::size_t v = 0; v < n; ++v) {
-      double b = 0.0;
-      for (int d = 0; d < D; ++d) b += gradient[v][d] * to_face[d];
-      const double a = b < 0.0 ? spread.below[v] : spread.above[v];
-      double psi;
-      if (is_smooth) {
-        const double common = a * a + smooth[v];
-        const double below = common + b * (a + 2.0 * b);
-        psi = below > 0.0 ? (common + 2.0 * a * b) / below : 1.0; // no slope, no spread: nothing to limit
-      } else {
-        psi = std::abs(b) > std::abs(a) ? a / b : 1.0;
+    Values<D> a, b{};
+    for (int d = 0; d < D; ++d)
+      for (std::size_t v = 0; v < n; ++v) b[v] += gradient[d][v] * to_face[d];
+    for (std::size_t v = 0; v < n; ++v) a[v] = b[v] < 0.0 ? spread.below[v] : spread.above[v];
+    if (is_smooth) {
+      for (std::size_t v = 0; v < n; ++v) {
+        const double common = a[v] * a[v] + smooth[v];
+        const double below = common + b[v] * (a[v] + 2.0 * b[v]);
+        const double psi = (common + 2.0 * a[v] * b[v]) / below;
+        factor[v] = psi < factor[v] ? psi : factor[v]; // 0 / 0 without slope and spread: nothing to limit
       }
-      factor[v] = psi < factor[v] ? psi : factor[v];
+    } else {
+      for (std::size_t v = 0; v < n; ++v) {
+        const double psi = a[v] / b[v]; // no number without a slope
+        factor[v] = psi < factor[v] ? psi : factor[v];
+      }
     }
   }
-  for (std::size_t v = 0; v < n; ++v)
-    for (int d = 0; d < D; ++d) gradient[v][d] *= factor[v];
+  for (int d = 0; d < D; ++d)
+    for (std::size_t v = 0; v < n; ++v) gradient[d][v] *= factor[v];
 }
 
 } // namespace mullion::euler

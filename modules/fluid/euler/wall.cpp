@@ -6,8 +6,8 @@
 namespace mullion::euler {
 
 template <int D>
-std::vector<WallFace<D>> wall_faces(const Mesh<D>& mesh, const Scheme<D>& scheme, std::span<const Values<D>> amounts,
-                                    const Nodes<D>& x, const Nodes<D>& v, std::span<const Index> faces)
+std::vector<WallFace<D>> wall_faces(const Mesh<D>& mesh, const Scheme<D>& scheme, const std::vector<Values<D>>& amounts,
+                                    const Nodes<D>& x, const Nodes<D>& v, const std::vector<Index>& faces)
 {
   std::vector<WallFace<D>> result;
   result.reserve(faces.size());
@@ -41,13 +41,13 @@ std::vector<WallFace<D>> wall_faces(const Mesh<D>& mesh, const Scheme<D>& scheme
       for (std::size_t q = 0; q < w.size(); ++q) {
         const double jump = other[q] - w[q];
         for (int d = 0; d < D; ++d)
-          gradient[q][static_cast<std::size_t>(d)] += weights[k][static_cast<std::size_t>(d)] * jump;
+          gradient[static_cast<std::size_t>(d)][q] += weights[k][static_cast<std::size_t>(d)] * jump;
         spread.below[q] = std::min(spread.below[q], jump);
         spread.above[q] = std::max(spread.above[q], jump);
       }
     }
     double g = 0.0;
-    for (int d = 0; d < D; ++d) g += gradient[D + 1][static_cast<std::size_t>(d)] * n[d];
+    for (int d = 0; d < D; ++d) g += gradient[static_cast<std::size_t>(d)][D + 1] * n[d];
 
     auto at_wall = w;
     if (scheme.order == 2) {
@@ -87,9 +87,9 @@ std::vector<WallFace<D>> wall_faces(const Mesh<D>& mesh, const Scheme<D>& scheme
   return result;
 }
 
-template std::vector<WallFace<2>> wall_faces(const Mesh<2>&, const Scheme<2>&, std::span<const Values<2>>,
-                                             const Nodes<2>&, const Nodes<2>&, std::span<const Index>);
-template std::vector<WallFace<3>> wall_faces(const Mesh<3>&, const Scheme<3>&, std::span<const Values<3>>,
-                                             const Nodes<3>&, const Nodes<3>&, std::span<const Index>);
+template std::vector<WallFace<2>> wall_faces(const Mesh<2>&, const Scheme<2>&, const std::vector<Values<2>>&,
+                                             const Nodes<2>&, const Nodes<2>&, const std::vector<Index>&);
+template std::vector<WallFace<3>> wall_faces(const Mesh<3>&, const Scheme<3>&, const std::vector<Values<3>>&,
+                                             const Nodes<3>&, const Nodes<3>&, const std::vector<Index>&);
 
 } // namespace mullion::euler

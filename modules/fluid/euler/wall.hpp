@@ -4,7 +4,6 @@
 #include "geometry.hpp"
 #include "solver.hpp"
 
-#include <span>
 #include <vector>
 
 namespace mullion::euler {
@@ -32,7 +31,7 @@ template <int D> struct WallFace {
 /// @param x        where the nodes are;  v  velocity of the nodes that goes with the pressure: the wall moves with its
 ///                 mean over each face
 template <int D>
-std::vector<WallFace<D>> wall_faces(const Mesh<D>& mesh, const Scheme<D>& scheme, std::span<const Values<D>> amounts,
-                                    const Nodes<D>& x, const Nodes<D>& v, std::span<const Index> faces);
+std::vector<WallFace<D>> wall_faces(const Mesh<D>& mesh, const Scheme<D>& scheme, const std::vector<Values<D>>& amounts,
+                                    const Nodes<D>& x, const Nodes<D>& v, const std::vector<Index>& faces);
 
 } // namespace mullion::euler
