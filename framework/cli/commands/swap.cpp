@@ -1,4 +1,4 @@
-// `mullion swap RUN KIND=MODULE`: another instance of a module in a live run.
+// `mullion swap RUN KIND=MODULE`: other code for a module of a live run.
 #include "commands/arguments.hpp"
 
 #include <mullion/app/live_runs.hpp>

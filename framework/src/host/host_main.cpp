@@ -1,6 +1,6 @@
 // The host: a lean process that carries one module. It maps the control object read-only, its own windows and its
 // reply object read-write, everything else read-only, and answers one request after another. While it is parked,
-// because another instance of its module is on trial, its own windows are read-only too.
+// because another carrier of its module is on trial, its own windows are read-only too.
 //
 // When the orchestrator dies the kernel kills us (PDEATHSIG); when we die the orchestrator learns it from a pidfd.
 // Our standard output and error are pipes that the orchestrator drains; a line that starts with \1 and a digit is

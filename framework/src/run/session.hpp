@@ -60,8 +60,8 @@ public:
   /// Ask the hosts to quit; kills what does not.
   void shut_down();
 
-  // ---- another instance of a module, or of the driver, between two steps (swap.cpp) ----
-  /// The candidate attaches to the windows as they are, read-only; then the instance at work lets go of them and is
+  // ---- another carrier of a module, or another driver object, between two steps (swap.cpp) ----
+  /// The candidate attaches to the windows as they are, read-only; then the carrier at work lets go of them and is
   /// parked, and the candidate is on trial until keep() or take_back().
   /// @throws Error Errc::plugin: it does not fit, or could not attach; nothing has changed
   void try_module(std::uint32_t module, ModuleCase candidate, const mullion_module& entries);
@@ -109,8 +109,8 @@ public:
   [[nodiscard]] const std::vector<std::uint32_t>& write_order() const { return write_order_; }
 
 private:
-  /// The code of a module: what a swap exchanges.
-  struct Instance {
+  /// What carries a module: a swap exchanges it.
+  struct Carrier {
     const ModuleCase* config = nullptr;
     const mullion_module* entries = nullptr;
     std::unique_ptr<module::ModuleRuntime> runtime;           ///< inline
@@ -118,7 +118,7 @@ private:
     std::vector<std::vector<std::uint32_t>> function_windows; ///< per function
   };
 
-  struct Module : Instance {
+  struct Module : Carrier {
     double clock_offset = 0.0;              ///< [s] of its clock against the run's
     std::vector<std::uint32_t> windows;     ///< its own
     std::uint32_t conflicts = 0;            ///< modules that read its windows, or whose windows it reads, in place
@@ -150,7 +150,7 @@ private:
     ModuleCase config;
     std::vector<ParameterValue> driver_parameters;
     std::optional<Wiring> wiring; ///< of the driver
-    Instance parked;
+    Carrier parked;
   };
 
   // swap.cpp

@@ -1,8 +1,8 @@
-// Other code at work in a live run, between two steps: a module's next instance (other parameters, another build,
+// Other code at work in a live run, between two steps: another carrier of a module (other parameters, another build,
 // another plug-in) or the driver with other parameters. State lives in windows, so the candidate attaches to what is
-// there and goes on; the instance before it stays parked until the candidate's first step is committed.
+// there and goes on; the one before it stays parked until the candidate's first step is committed.
 //
-// Who writes: of a module in a process, one instance at a time has its windows mapped read-write; the candidate is
+// Who writes: of a module in a process, one carrier at a time has its windows mapped read-write; the candidate is
 // parked while it attaches, the one before it afterwards. (Inline, both live in this process.) When a candidate dies,
 // the parked one takes over; when the parked one dies, it is respawned like any other if it is needed.
 #include "log/console.hpp"
@@ -49,7 +49,7 @@ void Session::try_module(std::uint32_t m, ModuleCase candidate, const mullion_mo
   trial_.emplace();
   trial_->module = m;
   trial_->config = std::move(candidate);
-  trial_->parked = std::exchange(static_cast<Instance&>(module), Instance{});
+  trial_->parked = std::exchange(static_cast<Carrier&>(module), Carrier{});
   module.config = &trial_->config;
   module.entries = &entries;
   auto old_driver = std::move(driver_);
@@ -77,7 +77,7 @@ void Session::try_module(std::uint32_t m, ModuleCase candidate, const mullion_mo
 
 void Session::hand_over(std::uint32_t m, const TimeStep& at)
 {
-  auto& at_work = static_cast<Instance&>(modules_[m]);
+  auto& at_work = static_cast<Carrier&>(modules_[m]);
   std::swap(at_work, trial_->parked);
   try {
     call(m, Operation::park, at);
@@ -92,7 +92,7 @@ void Session::restore_parked()
 {
   auto& module = modules_[trial_->module];
   if (module.host != nullptr) supervisor_.kill(*module.host);
-  static_cast<Instance&>(module) = std::move(trial_->parked);
+  static_cast<Carrier&>(module) = std::move(trial_->parked);
   arrange_timings(module);
   describe(trial_->module);
   if (module.host == nullptr) return;

@@ -10,7 +10,7 @@
 
 namespace mullion::run {
 
-/// @param module  number of the instance whose windows the candidate would take over
+/// @param module  number of the module whose windows the candidate would take over
 /// @returns what does not fit, all of it, with ";" in between; "" if everything does
 std::string misfit(const mullion_module& candidate, std::uint32_t module, shm::WindowMap& windows);
 

@@ -74,7 +74,7 @@ struct ParameterRecord {
   std::uint32_t text_offset, reserved;
 };
 
-/// park: give up the right to write the own windows, so that another instance of the module can have it; resume: take
+/// park: give up the right to write the own windows, so that another carrier of the module can have it; resume: take
 /// it (back).
 enum class Operation : std::uint32_t { none, create, define, attach, start, seal, step, call, quit, park, resume };
 

@@ -27,12 +27,12 @@ struct ChangeOutcome {
   long long step = 0; ///< the first step with it
 };
 
-/// Put another instance in the place of a module at the next step boundary, and wait until its first step is committed.
+/// Put other code in the place of a module at the next step boundary, and wait until its first step is committed.
 /// @param target  instance or kind
 /// @param plugin  name of a plug-in, or path of a library (with a '/')
 /// @param sets    its parameters, "youngs_modulus=7e10"
 /// @throws Error Errc::config, Errc::plugin: refused, the run goes on undisturbed; Errc::process: its first step failed
-///         and the instance before it did that step again, or the run ended
+///         and what was there before did that step again, or the run ended
 ChangeOutcome swap_module(const std::string& name, const std::string& target, const std::string& plugin,
                           const std::vector<std::string>& sets);
 

@@ -55,7 +55,7 @@ template <class Owner, class T> struct Parameter {
   bool is_required;
   bool is_changeable = false;
 
-  /// `mullion set` may change it in a live run: an instance with the new value goes on from the windows as they are.
+  /// `mullion set` may change it in a live run: an object with the new value goes on from the windows as they are.
   /// Not for what sizes or fills windows in define (meshes, first states).
   [[nodiscard]] constexpr Parameter changeable() const
   {
