@@ -24,8 +24,8 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// More steps than an event takes, even on a fast machine: a step of five processes takes 30 us at least.
-constexpr long long steps_an_event = 3000;
+/// More steps than an event takes: some tens of milliseconds, and five processes need 30 us for a step at least.
+constexpr long long steps_an_event = 1000;
 constexpr double dt = 6.094494002200441e-6;
 constexpr const char* plugins[] = {"euler_1d", "faulty_structure", "stretch_1d", "point_transfer"};
 

@@ -34,6 +34,27 @@ fs::path another_build(const test::RunFolder& folder, const std::string& plugin)
   return copy;
 }
 
+/// Long enough to be disturbed a dozen times even inline, where a step takes some microseconds.
+test::CaseRun longer_piston(const std::vector<std::string>& flags, const std::vector<std::string>& sets = {})
+{
+  std::vector<std::string> all{"run.end_time=1.8283482006601323", "output.every=15000", "output.history_every=10"};
+  all.insert(all.end(), sets.begin(), sets.end());
+  return test::piston(all, flags);
+}
+
+/// Results of the same without disturbance, made once.
+std::filesystem::path whole()
+{
+  static const test::RunFolder folder;
+  static const bool is_made = [] {
+    auto run = longer_piston({"--inline"}, {"run.name=whole"});
+    run.out = "whole";
+    return folder.run(run).exit_code == 0;
+  }();
+  REQUIRE(is_made);
+  return folder / "whole";
+}
+
 /// End a live run, whose results must be the first part of the undisturbed run's.
 void check_undisturbed(const test::RunFolder& folder, test::Process& run)
 {
@@ -41,7 +62,7 @@ void check_undisturbed(const test::RunFolder& folder, test::Process& run)
   const auto result = run.wait();
   CHECK_MESSAGE(result.exit_code == 0, result.err);
   CHECK(test::last_step(folder / "out") > 0);
-  CHECK(test::difference_of_part(folder / "out", folder / "whole") == "");
+  CHECK(test::difference_of_part(folder / "out", whole()) == "");
   test::check_nothing_left(folder);
 }
 
@@ -53,7 +74,8 @@ void rest_a_moment(std::mt19937& random)
 std::vector<std::string> events(const test::RunFolder& folder)
 {
   std::vector<std::string> found;
-  for (const auto& event : test::read_record(folder / "out").at("attempts").at(0).at("events"))
+  const auto record = test::read_record(folder / "out"); // must outlive the loop over it
+  for (const auto& event : record.at("attempts").at(0).at("events"))
     found.push_back(event.at("what").get<std::string>() + " " + event.at("instance").get<std::string>());
   return found;
 }
@@ -66,11 +88,10 @@ TEST_CASE("a swap to the same code leaves the bytes of the results as they are, 
   CAPTURE(seed);
   std::mt19937 random(seed);
   const test::RunFolder folder;
-  test::run_whole(folder);
   for (const char* where : {"--inline", "--processes"}) {
     CAPTURE(where);
     fs::remove_all(folder / "out");
-    const auto run = folder.start(test::long_piston({}, {where}));
+    const auto run = folder.start(longer_piston({where}));
     REQUIRE(folder.wait_for_step(test::piston_name, 5));
 
     for (int module = 0; module < 4; ++module) {
@@ -116,7 +137,7 @@ TEST_CASE("a candidate that does not fit, or cannot attach, is refused with the 
         {"structure=faulty_structur", "there is no plug-in 'faulty_structur'; did you mean 'faulty_structure'?"},
         {"structur=faulty_structure", "the run has no module 'structur'; did you mean 'structure'?"},
         {"fluid=" + tests + "wrong_abi.so", "wrong_abi.so: built for plug-in ABI 999"},
-        {"fluid=" + tests + "nowhere.so", "nowhere.so: there is no such file"},
+        {"fluid=" + tests + "nowhere.so", "nowhere.so: No such file or directory"},
         {"fluid=" + (folder / "text.so").string(), "text.so: file too short"},
         {"structure=faulty_structure", "has no parameter 'mas'; did you mean 'mass'?", {"mas=3"}},
         {"structure=faulty_structure", "mass = -3 is out of range; expected a number > 0 [kg]", {"mass=-3"}},
@@ -125,11 +146,10 @@ TEST_CASE("a candidate that does not fit, or cannot attach, is refused with the 
     };
   };
   const test::RunFolder folder;
-  test::run_whole(folder);
   for (const char* where : {"--inline", "--processes"}) {
     CAPTURE(where);
     fs::remove_all(folder / "out");
-    const auto run = folder.start(test::long_piston({}, {where}));
+    const auto run = folder.start(longer_piston({where}));
     REQUIRE(folder.wait_for_step(test::piston_name, 5));
 
     for (const auto& refusal : refusals(folder)) {
@@ -149,8 +169,7 @@ TEST_CASE("a candidate that does not fit, or cannot attach, is refused with the 
 TEST_CASE("a candidate in a process may die or write into the windows while it attaches: it has no right to")
 {
   const test::RunFolder folder;
-  test::run_whole(folder);
-  const auto run = folder.start(test::long_piston({}, {"--processes"}));
+  const auto run = folder.start(longer_piston({"--processes"}));
   REQUIRE(folder.wait_for_step(test::piston_name, 5));
   for (const auto& [fault, reason] :
        std::vector<std::pair<std::string, std::string>>{{"abort", "was killed by signal 6 (SIGABRT), in attach"},
@@ -168,7 +187,6 @@ TEST_CASE("a candidate in a process may die or write into the windows while it a
 TEST_CASE("when a candidate fails in its first step, the one before it takes over and the bytes are the same")
 {
   const test::RunFolder folder;
-  test::run_whole(folder);
   struct Failure {
     std::string fault, reason;
     bool is_inline_too;
@@ -184,7 +202,7 @@ TEST_CASE("when a candidate fails in its first step, the one before it takes ove
   for (const char* where : {"--inline", "--processes"}) {
     CAPTURE(where);
     fs::remove_all(folder / "out");
-    const auto run = folder.start(test::long_piston({"run.call_deadline=0.5"}, {where}));
+    const auto run = folder.start(longer_piston({where}, {"run.call_deadline=0.5"}));
     REQUIRE(folder.wait_for_step(test::piston_name, 5));
 
     for (const auto& failure : failures) {
@@ -204,11 +222,10 @@ TEST_CASE("when a candidate fails in its first step, the one before it takes ove
 TEST_CASE("a run that is swapped and replayed, or redone by fresh processes, in every step agrees with itself")
 {
   const test::RunFolder folder;
-  test::run_whole(folder);
   for (const auto& flags :
        {std::vector<std::string>{"--replay", "--processes"}, {"--replay", "--inline"}, {"--amnesia", "7"}}) {
     fs::remove_all(folder / "out");
-    const auto run = folder.start(test::long_piston({}, flags));
+    const auto run = folder.start(longer_piston(flags));
     REQUIRE(folder.wait_for_step(test::piston_name, 5));
     for (const int module : {0, 1, 2, 3, 1}) {
       const auto swap =
@@ -222,11 +239,13 @@ TEST_CASE("a run that is swapped and replayed, or redone by fresh processes, in 
 TEST_CASE("set changes what is declared changeable from the next step on, and a run with other parameters differs")
 {
   const test::RunFolder folder;
-  test::run_whole(folder);
+  auto every = test::piston({"run.name=every", "run.end_time=0.6094494002200441", "output.every=0"}, {"--inline"});
+  every.out = "every";
+  REQUIRE(folder.run(every).exit_code == 0);
   for (const char* where : {"--inline", "--processes"}) {
     CAPTURE(where);
     fs::remove_all(folder / "out");
-    const auto run = folder.start(test::long_piston({}, {where}));
+    const auto run = folder.start(longer_piston({where}, {"output.history_every=1"}));
     REQUIRE(folder.wait_for_step(test::piston_name, 5));
 
     const auto same = folder.command({"set", test::piston_name, "structure.mass=520", "structure.stiffness=1.4e7"});
@@ -257,7 +276,7 @@ TEST_CASE("set changes what is declared changeable from the next step on, and a 
       return text.substr(0, end);
     };
     const auto here = test::read_file(folder / "out/history.csv");
-    const auto whole = test::read_file(folder / "whole/history.csv");
+    const auto whole = test::read_file(folder / "every/history.csv");
     CHECK(lines_until(here, changed_at - 1) == lines_until(whole, changed_at - 1));
     CHECK(lines_until(here, changed_at) != lines_until(whole, changed_at));
   }
@@ -266,8 +285,7 @@ TEST_CASE("set changes what is declared changeable from the next step on, and a 
 TEST_CASE("set refuses driver parameters that would connect other fields, and unknown ones with the near name")
 {
   const test::RunFolder folder;
-  test::run_whole(folder);
-  const auto run = folder.start(test::long_piston());
+  const auto run = folder.start(longer_piston({"--processes"}));
   REQUIRE(folder.wait_for_step(test::piston_name, 5));
 
   for (const auto& [set, reason] : std::vector<std::pair<std::string, std::string>>{
