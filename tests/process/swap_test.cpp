@@ -1,5 +1,6 @@
 // Other code at work in a live run: the same code leaves no trace in the results, a candidate that does not fit or
 // fails leaves none either, other parameters do what a run with them does from there on.
+#include "process/run_socket.hpp"
 #include "support/faulty_piston.hpp"
 
 #include <doctest/doctest.h>
@@ -303,6 +304,43 @@ TEST_CASE("set refuses driver parameters that would connect other fields, and un
     CHECK_MESSAGE(has(result.err, reason), result.err);
   }
   check_undisturbed(folder, *run);
+}
+
+TEST_CASE("driver parameters that let the first step fail are taken back, and the bytes are the same")
+{
+  const test::RunFolder folder;
+  auto clean = test::long_piston({"driver.scheme=strong", "run.name=clean"}, {"--inline"});
+  clean.out = "clean";
+  REQUIRE(folder.run(clean).exit_code == 0);
+  const auto run = folder.start(test::long_piston({"driver.scheme=strong"}, {"--processes"}));
+  REQUIRE(folder.wait_for_step(test::piston_name, 5));
+
+  const auto set = folder.command({"set", test::piston_name, "driver.max_iterations=1"});
+  run->send(SIGINT);
+  const auto result = run->wait();
+
+  CHECK(set.exit_code == 1);
+  CHECK_MESSAGE(has(set.err, "set driver (max_iterations = 1) taken back, the one before it does step "), set.err);
+  CHECK_MESSAGE(has(set.err, " has not converged after 1 iteration"), set.err);
+  CHECK_MESSAGE(result.exit_code == 0, result.err);
+  CHECK(test::difference_of_part(folder / "out", folder / "clean") == "");
+}
+
+TEST_CASE("a line that is no command of a run is answered with the nearest one")
+{
+  const test::RunFolder folder;
+  const auto run = folder.start(test::long_piston());
+  REQUIRE(folder.wait_for_step(test::piston_name, 5));
+
+  const auto unknown = nlohmann::json::parse(process::ask_run(test::piston_name, "chekpoint"));
+  const auto no_json = nlohmann::json::parse(process::ask_run(test::piston_name, "swap {"));
+  const auto no_target = nlohmann::json::parse(process::ask_run(test::piston_name, "swap {}"));
+  run->send(SIGINT);
+
+  CHECK(unknown.at("error") == "a run knows no command 'chekpoint'; did you mean 'checkpoint'?");
+  CHECK(no_json.contains("error"));
+  CHECK(no_target.contains("error"));
+  CHECK(run->wait().exit_code == 0);
 }
 
 TEST_CASE("run.end_time and output.every can be set: the results are those of a case that says so")

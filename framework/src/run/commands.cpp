@@ -24,13 +24,6 @@ using Json = nlohmann::ordered_json;
 
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-std::string done(const std::string& what, std::int64_t step) { return text_of({{"ok", what}, {"step", step}}); }
-
-std::string refused(Errc code, const std::string& why)
-{
-  return text_of({{"error", why}, {"code", static_cast<int>(code)}});
-}
-
 /// "a.b=v" as ("a.b", "v").
 std::pair<std::string, std::string> split_assignment(const std::string& text)
 {
@@ -71,6 +64,13 @@ void assign(std::vector<ParameterValue>& parameters, std::span<const mullion_par
 
 } // namespace
 
+std::string reply_done(const std::string& what, std::int64_t step) { return text_of({{"ok", what}, {"step", step}}); }
+
+std::string reply_refused(Errc code, const std::string& why)
+{
+  return text_of({{"error", why}, {"code", static_cast<int>(code)}});
+}
+
 // ---- the supervisor's thread -------------------------------------------------------------------------------------
 
 void Commands::answer(const std::string& line, const process::Reply& reply)
@@ -82,14 +82,14 @@ void Commands::answer(const std::string& line, const process::Reply& reply)
   if (what == "timings") return reply(timings());
   if (what == "stop") {
     supervisor_.request_stop("mullion stop");
-    return reply(done("stops", session_.control().step.load()));
+    return reply(reply_done("stops", session_.control().step.load()));
   }
   const std::vector<std::string> known{"status", "timings", "stop", "swap", "set", "checkpoint"};
   if (std::find(known.begin(), known.end(), what) == known.end())
-    return reply(
-        refused(Errc::config, fmt::format("a run knows no command '{}'{}", what, config::suggestion(what, known))));
+    return reply(reply_refused(Errc::config,
+                               fmt::format("a run knows no command '{}'{}", what, config::suggestion(what, known))));
   const std::lock_guard lock(mutex_);
-  if (is_over_) return reply(refused(Errc::process, "the run is at its end"));
+  if (is_over_) return reply(reply_refused(Errc::process, "the run is at its end"));
   pending_.push_back({what, arguments, reply});
   has_pending_.store(true, std::memory_order_relaxed);
 }
@@ -141,9 +141,9 @@ void Commands::apply_pending(TimePlan& plan)
       apply(command, plan);
     } catch (const Error& error) {
       log::warning("run", "{} refused: {}", command.what, error.what());
-      command.reply(refused(error.code(), error.what()));
+      command.reply(reply_refused(error.code(), error.what()));
     } catch (const std::exception& error) { // JSON that is none
-      command.reply(refused(Errc::config, error.what()));
+      command.reply(reply_refused(Errc::config, error.what()));
     }
   }
 }
@@ -238,10 +238,11 @@ void Commands::apply_set(const Pending& command, TimePlan& plan)
     changes += fmt::format("{}{} = {}", changes.empty() ? "" : ", ", assignments.back().first, value);
   }
   if (table == "run" || table == "output") {
-    for (const auto& [key, value] : assignments) set_run(table + "." + key, value, plan);
+    MULLION_REQUIRE(assignments.size() == 1, Errc::config, "one key of [{}] at a time", table);
+    set_run(table + "." + assignments[0].first, assignments[0].second, plan);
     recorder_.note("set", table, changes);
     log::info("run", "set {}: {}", table, changes);
-    return command.reply(done(fmt::format("{}: {}", table, changes), session_.control().step.load()));
+    return command.reply(reply_done(fmt::format("{}: {}", table, changes), session_.control().step.load()));
   }
   on_trial_ = {"set", table, changes, {}, {}, command.reply};
   if (table == "driver") {
@@ -307,7 +308,7 @@ void Commands::keep(const TimeStep& step)
   session_.keep();
   recorder_.note(what, instance, detail);
   log::info("run", "{} {}: {}; at work from step {} on", what, instance, detail, step.index);
-  reply(done(fmt::format("{}: {}", instance, detail), step.index));
+  reply(reply_done(fmt::format("{}: {}", instance, detail), step.index));
   on_trial_ = {};
 }
 
@@ -320,17 +321,18 @@ bool Commands::take_back(const TimeStep& step, const std::string& failure)
                                 detail, step.index, failure);
   recorder_.note(what + " taken back", instance, fmt::format("{}: {}", detail, failure));
   log::warning("run", "{}", text);
-  reply(refused(Errc::process, text));
+  reply(reply_refused(Errc::process, text));
   return true;
 }
 
 void Commands::finish()
 {
-  if (session_.has_trial()) on_trial_.reply(refused(Errc::process, "the run failed before the outcome was known"));
+  if (session_.has_trial())
+    on_trial_.reply(reply_refused(Errc::process, "the run failed before the outcome was known"));
   const std::lock_guard lock(mutex_);
   is_over_ = true;
   for (const auto& command : std::exchange(pending_, {}))
-    command.reply(refused(Errc::process, "the run ended before it came to that"));
+    command.reply(reply_refused(Errc::process, "the run ended before it came to that"));
 }
 
 } // namespace mullion::run

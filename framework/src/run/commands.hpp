@@ -14,6 +14,7 @@
 #include "run/time_plan.hpp"
 
 #include <mullion/app/case_file.hpp>
+#include <mullion/sdk/error.hpp>
 
 #include <atomic>
 #include <deque>
@@ -24,6 +25,10 @@
 
 namespace mullion::run {
 
+/// The two kinds of replies.
+std::string reply_done(const std::string& what, std::int64_t step);
+std::string reply_refused(Errc code, const std::string& why);
+
 class Commands {
 public:
   /// @param the_case  as it stands: what `set` and `swap` change is changed in it, its text included
@@ -32,7 +37,8 @@ public:
   {
   }
 
-  /// Who writes checkpoints: called between two steps, replies when the file is on disk.
+  /// Who writes checkpoints: called between two steps by the main thread; replies (reply_done, from any thread) when
+  /// the file is on disk. The case as it stands is the one given above.
   std::function<void(process::Reply)> on_checkpoint;
 
   // ---- the supervisor's thread ----

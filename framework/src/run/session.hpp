@@ -156,6 +156,7 @@ private:
   // swap.cpp
   void hand_over(std::uint32_t module, const TimeStep& at);
   void restore_parked();
+  [[nodiscard]] TimeStep now() const; ///< for calls between two steps
   void attach_driver();
   void arrange_timings(Module& module);
 

@@ -101,7 +101,7 @@ std::string Session::recover()
 
 void Session::attach_again(const std::vector<std::uint32_t>& modules)
 {
-  const TimeStep at{control_.step.load(), control_.time.load(), control_.time.load(), case_.dt, 0};
+  const auto at = now();
   is_running_ = false; // the start-up deadline holds
   shm::roll_back(control_);
   for (const auto m : modules) spawn(m);

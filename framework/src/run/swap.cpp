@@ -44,7 +44,7 @@ void Session::try_module(std::uint32_t m, ModuleCase candidate, const mullion_mo
   MULLION_REQUIRE(wrong.empty(), Errc::plugin, "{} does not fit the windows of '{}': {}", candidate.plugin,
                   candidate.instance, wrong);
 
-  const TimeStep at{control_.step.load(), control_.time.load(), control_.time.load(), case_.dt, 0};
+  const auto at = now();
   auto& module = modules_[m];
   trial_.emplace();
   trial_->module = m;
@@ -75,6 +75,12 @@ void Session::try_module(std::uint32_t m, ModuleCase candidate, const mullion_mo
   is_running_ = true;
 }
 
+TimeStep Session::now() const
+{
+  const double time = control_.time;
+  return {control_.step, time, time, case_.dt, 0};
+}
+
 void Session::hand_over(std::uint32_t m, const TimeStep& at)
 {
   auto& at_work = static_cast<Carrier&>(modules_[m]);
@@ -99,6 +105,11 @@ void Session::restore_parked()
   auto& record = control_.modules[trial_->module];
   record.pid = module.host->pid;
   record.reply_fd = module.host->reply_object.get();
+  try { // whether it was parked or not
+    call(trial_->module, Operation::resume, now());
+  } catch (const Error& error) { // dead meanwhile: the next step finds that out
+    log::debug("run", "while taking back: {}", error.what());
+  }
 }
 
 void Session::attach_driver()
@@ -152,17 +163,8 @@ void Session::take_back()
       log::debug("run", "while taking back: {}", error.what());
     }
   }
-  const auto m = trial_->module;
-  if (m == shm::no_module) driver_parameters_ = &case_.driver_parameters;
-  else {
-    const TimeStep at{control_.step.load(), control_.time.load(), control_.time.load(), case_.dt, 0};
-    restore_parked();
-    try {
-      if (modules_[m].host != nullptr) call(m, Operation::resume, at);
-    } catch (const Error& error) { // dead meanwhile: the step's next attempt finds that out
-      log::debug("run", "while taking back: {}", error.what());
-    }
-  }
+  if (trial_->module == shm::no_module) driver_parameters_ = &case_.driver_parameters;
+  else restore_parked();
   trial_.reset();
   shm::roll_back(control_);
   attach_driver();
