@@ -33,7 +33,8 @@ TEST_CASE("mullion alone and --help show the commands")
     CHECK(result.exit_code == 0);
     CHECK(result.err == "");
     for (const char* command :
-         {"run CASE", "check CASE", "study STUDY", "modules [NAME]", "report DIR", "ps", "stop RUN"})
+         {"run CASE", "check CASE", "study STUDY", "modules [NAME]", "report DIR", "ps", "stop RUN",
+          "inspect RUN [WINDOW[.FIELD]]", "set RUN KEY=VALUE", "swap RUN KIND=MODULE", "checkpoint RUN"})
       CHECK(has(result.out, command));
   }
 }
@@ -49,7 +50,7 @@ TEST_CASE("--version names the version, the plug-in ABI and the build")
 
 TEST_CASE("each command has a help")
 {
-  for (const char* command : {"check", "modules", "report"}) {
+  for (const char* command : {"check", "modules", "report", "inspect", "set", "swap", "checkpoint"}) {
     const auto result = mullion_command({command, "--help"});
 
     CHECK(result.exit_code == 0);
