@@ -34,7 +34,7 @@ std::pair<std::string, std::string> split_assignment(const std::string& text)
 }
 
 /// Assign one parameter among `parameters`.
-/// @param label  "structure (elastic_bar)"
+/// @param label  whose they are: instance and plug-in
 /// @throws Error Errc::config: unknown, no legal value, or not changeable though it must be
 void assign(std::vector<ParameterValue>& parameters, std::span<const mullion_parameter_spec> specs,
             const std::string& key, const std::string& value, const std::string& label, bool must_be_changeable)
