@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -281,6 +282,51 @@ TEST_CASE("set changes what is declared changeable from the next step on, and a 
     CHECK(lines_until(here, changed_at - 1) == lines_until(whole, changed_at - 1));
     CHECK(lines_until(here, changed_at) != lines_until(whole, changed_at));
   }
+}
+
+TEST_CASE("another plug-in with the same windows goes on from them, with its own parameters")
+{
+  const test::RunFolder folder;
+  for (const char* where : {"--inline", "--processes"}) {
+    CAPTURE(where);
+    fs::remove_all(folder / "out");
+    const auto run = folder.start(longer_piston({where}));
+    REQUIRE(folder.wait_for_step(test::piston_name, 5));
+
+    const auto swap = folder.command({"swap", test::piston_name, "structure=twin_structure", "--set", "origin=1.0"});
+    const auto modules = folder.command({"inspect", test::piston_name});
+    const auto back = folder.command({"swap", test::piston_name, "structure=faulty_structure"});
+
+    CHECK_MESSAGE(swap.exit_code == 0, swap.err);
+    CHECK(has(swap.out, "structure: twin_structure 0.1.0 for faulty_structure 0.1.0, from "));
+    CHECK(has(modules.out, "structure      structure      twin_structure "));
+    CHECK_MESSAGE(back.exit_code == 0, back.err);
+    check_undisturbed(folder, *run); // its defaults are those of the case
+  }
+}
+
+TEST_CASE("parameters that are set at a step do the same inline and in processes, to the last bit")
+{
+  const test::RunFolder folder;
+  auto clean = test::piston({"run.name=clean"}, {"--inline"});
+  clean.out = "clean";
+  REQUIRE(folder.run(clean).exit_code == 0);
+  for (const char* where : {"--inline", "--processes"}) {
+    auto run = test::piston({"structure.fault=slow", "structure.at_step=20", "structure.duration=1.0"}, {where});
+    run.out = std::string(where).substr(2);
+    const auto live = folder.start(run);
+    REQUIRE(folder.wait_for_step(test::piston_name, 19)); // step 20 takes a second: the command waits for its end
+
+    const auto mass = folder.start_command({"set", test::piston_name, "structure.mass=600"});
+
+    CHECK(mass->wait().exit_code == 0);
+    CHECK(live->wait().exit_code == 0);
+  }
+  CHECK(test::difference(folder / "inline", folder / "processes") == "");
+  const auto here = test::read_file(folder / "inline/history.csv");
+  const auto there = test::read_file(folder / "clean/history.csv");
+  const auto same = std::mismatch(here.begin(), here.end(), there.begin(), there.end()).first - here.begin();
+  CHECK(std::count(here.begin(), here.begin() + same, '\n') == 22); // the header, and steps 0 to 20
 }
 
 TEST_CASE("set refuses driver parameters that would connect other fields, and unknown ones with the near name")
