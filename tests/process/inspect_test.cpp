@@ -32,6 +32,26 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// 120,000 steps, a row of history for each: at full speed they take half a second inline.
+test::CaseRun watched_piston(const std::vector<std::string>& flags = {"--processes"})
+{
+  return test::piston({"run.end_time=0.7313392802640529", "output.every=20000"}, flags);
+}
+
+/// Results of the same without anybody watching, made once.
+std::filesystem::path whole()
+{
+  static const test::RunFolder folder;
+  static const bool is_made = [] {
+    auto run = watched_piston({"--inline"});
+    run.sets.emplace_back("run.name=whole");
+    run.out = "whole";
+    return folder.run(run).exit_code == 0;
+  }();
+  REQUIRE(is_made);
+  return folder / "whole";
+}
+
 Json inspect(const test::RunFolder& folder, const std::vector<std::string>& what)
 {
   std::vector<std::string> command{"inspect", test::piston_name};
@@ -75,7 +95,7 @@ void check_undisturbed(const test::RunFolder& folder, test::Process& run)
   run.send(SIGINT);
   const auto result = run.wait();
   CHECK_MESSAGE(result.exit_code == 0, result.err);
-  CHECK(test::difference_of_part(folder / "out", folder / "whole") == "");
+  CHECK(test::difference_of_part(folder / "out", whole()) == "");
   test::check_nothing_left(folder);
 }
 
@@ -84,11 +104,10 @@ void check_undisturbed(const test::RunFolder& folder, test::Process& run)
 TEST_CASE("inspect shows modules, calls and windows of a run at full speed, and the values that its history has")
 {
   const test::RunFolder folder;
-  test::run_whole(folder);
   for (const char* where : {"--inline", "--processes"}) {
     CAPTURE(where);
     std::filesystem::remove_all(folder / "out");
-    const auto run = folder.start(test::long_piston({}, {where}));
+    const auto run = folder.start(watched_piston({where}));
     REQUIRE(folder.wait_for_step(test::piston_name, 5));
 
     const auto all = inspect(folder, {});
@@ -134,7 +153,7 @@ TEST_CASE("inspect shows modules, calls and windows of a run at full speed, and 
     CHECK(received.at("fields")[0].at("name") == "traction");
 
     // What was seen in passing is what the whole run has in the row of that step, to the last bit.
-    const auto history = test::read_file(folder / "whole/history.csv");
+    const auto history = test::read_file(whole() / "history.csv");
     for (const auto& seen : displacements) {
       const auto step = seen.at("step").get<long long>();
       CAPTURE(step);
@@ -148,7 +167,7 @@ TEST_CASE("inspect shows modules, calls and windows of a run at full speed, and 
 TEST_CASE("inspect without --json is for people, and --follow goes on until the run ends")
 {
   const test::RunFolder folder;
-  const auto run = folder.start(test::long_piston());
+  const auto run = folder.start(watched_piston());
   REQUIRE(folder.wait_for_step(test::piston_name, 5));
 
   const auto all = folder.command({"inspect", test::piston_name});
@@ -179,7 +198,7 @@ TEST_CASE("inspect without --json is for people, and --follow goes on until the 
 TEST_CASE("inspect of a run, window or field that is not there names the nearest")
 {
   const test::RunFolder folder;
-  const auto run = folder.start(test::long_piston());
+  const auto run = folder.start(watched_piston());
   REQUIRE(folder.wait_for_step(test::piston_name, 5));
   for (const auto& [words, error] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"faultz"}, "no run named 'faultz' is alive; did you mean 'faulty'?"},
@@ -200,8 +219,7 @@ TEST_CASE("inspect of a run, window or field that is not there names the nearest
 TEST_CASE("clients that stop, die or never read do not hold up a run, nor other clients")
 {
   const test::RunFolder folder;
-  test::run_whole(folder);
-  const auto run = folder.start(test::long_piston());
+  const auto run = folder.start(watched_piston());
   REQUIRE(folder.wait_for_step(test::piston_name, 5));
 
   std::vector<int> sockets;
@@ -240,8 +258,7 @@ TEST_CASE("another user gets no answer but that")
 {
   if (::getuid() != 0) return; // only root can become somebody else
   const test::RunFolder folder;
-  test::run_whole(folder);
-  const auto run = folder.start(test::long_piston());
+  const auto run = folder.start(watched_piston());
   REQUIRE(folder.wait_for_step(test::piston_name, 5));
   namespace fs = std::filesystem;
   // As badly protected as it gets: anybody may come up to the socket.
