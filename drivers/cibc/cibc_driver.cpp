@@ -40,10 +40,12 @@ public:
               required_parameter("fluid_density", &Options::fluid_density, "kg/m^3", "undisturbed density of the fluid",
                                  above(0.0)),
               parameter("omega", &Options::omega, "s/m", "weight of the pressure rates; or give kappa, or h",
-                        at_least(0.0)),
+                        at_least(0.0))
+                  .changeable(),
               parameter("kappa", &Options::kappa, "1", "weight as omega times sound_speed; 0.4 if none is given",
-                        at_least(0.0)),
-              parameter("h", &Options::h, "1", "weight as omega times reference_velocity", at_least(0.0)),
+                        at_least(0.0))
+                  .changeable(),
+              parameter("h", &Options::h, "1", "weight as omega times reference_velocity", at_least(0.0)).changeable(),
               parameter("sound_speed", &Options::sound_speed, "m/s", "undisturbed sound speed, for kappa",
                         at_least(0.0)),
               parameter("reference_velocity", &Options::reference_velocity, "m/s",
@@ -64,7 +66,8 @@ public:
               parameter("sub_iterations", &Options::sub_iterations, "1",
                         "how often a step is redone with the corrected traction", between(0.0, 100.0)),
               parameter("omega_check", &Options::omega_check, "", "what an inadmissible weight is",
-                        one_of("error", "warn"))},
+                        one_of("error", "warn"))
+                  .changeable()},
           load_interpolation_option(), receives_option());
     }
   };

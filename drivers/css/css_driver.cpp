@@ -22,9 +22,11 @@ public:
       return std::tuple_cat(
           std::tuple{
               parameter("alpha", &Options::alpha, "1", "share of the old wall velocity in the one that the fluid gets",
-                        between(0.0, 1.0)),
+                        between(0.0, 1.0))
+                  .changeable(),
               parameter("beta", &Options::beta, "1", "share of the old traction in the load that the structure gets",
-                        between(0.0, 1.0)),
+                        between(0.0, 1.0))
+                  .changeable(),
               parameter("order", &Options::order, "", "who moves first", one_of("structure_first", "fluid_first"))},
           profile_option(), sampling_option(),
           std::tuple{parameter("load_time", &Options::load_time, "",

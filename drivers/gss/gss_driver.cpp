@@ -21,13 +21,15 @@ public:
     static constexpr auto table()
     {
       return std::tuple_cat(
-          std::tuple{parameter("a0", &Options::a0, "1", "predictor: factor of dt a^n; 1.5 for second order"),
-                     parameter("a1", &Options::a1, "1", "predictor: factor of -dt a^{n-1}; 0.5 for second order"),
-                     parameter("beta", &Options::beta, "1",
-                               "share of the old traction in the load that the structure gets", between(0.0, 1.0)),
-                     parameter("load", &Options::load, "",
-                               "the old traction: the fluid's of the last step (mean), or the last load (recursion)",
-                               one_of("mean", "recursion"))},
+          std::tuple{
+              parameter("a0", &Options::a0, "1", "predictor: factor of dt a^n; 1.5 for second order").changeable(),
+              parameter("a1", &Options::a1, "1", "predictor: factor of -dt a^{n-1}; 0.5 for second order").changeable(),
+              parameter("beta", &Options::beta, "1", "share of the old traction in the load that the structure gets",
+                        between(0.0, 1.0))
+                  .changeable(),
+              parameter("load", &Options::load, "",
+                        "the old traction: the fluid's of the last step (mean), or the last load (recursion)",
+                        one_of("mean", "recursion"))},
           profile_option(), sampling_option(), load_interpolation_option(), exchange_options());
     }
   };

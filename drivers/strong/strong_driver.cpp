@@ -34,27 +34,36 @@ public:
               parameter("predictor", &Options::predictor, "", "first guess, extrapolated from the last steps",
                         one_of("constant", "linear", "quadratic")),
               parameter("relaxation", &Options::relaxation, "1",
-                        "constant: theta; aitken: theta of the first iteration", above(0.0)),
+                        "constant: theta; aitken: theta of the first iteration", above(0.0))
+                  .changeable(),
               parameter("first_relaxation", &Options::first_relaxation, "1",
-                        "quasi-Newton: theta while nothing is known", above(0.0)),
+                        "quasi-Newton: theta while nothing is known", above(0.0))
+                  .changeable(),
               parameter("reuse", &Options::reuse, "1", "iqn_ils: steps whose columns are kept", between(0.0, 1000.0)),
               parameter("max_columns", &Options::max_columns, "1", "quasi-Newton: columns at most",
                         between(1.0, 10000.0)),
               parameter("filter", &Options::filter, "1",
-                        "quasi-Newton: least new part of a column; 0: 1e-2 serial, 1e-3 parallel", between(0.0, 1.0)),
+                        "quasi-Newton: least new part of a column; 0: 1e-2 serial, 1e-3 parallel", between(0.0, 1.0))
+                  .changeable(),
               parameter("motion_tolerance", &Options::motion_tolerance, "1", "change of the motion, relative",
-                        at_least(0.0)),
+                        at_least(0.0))
+                  .changeable(),
               parameter("motion_floor", &Options::motion_floor, "m/s",
                         "change of the motion (norm over all values) that always passes; m for motion = displacement",
-                        at_least(0.0)),
+                        at_least(0.0))
+                  .changeable(),
               parameter("traction_tolerance", &Options::traction_tolerance, "1", "change of the traction, relative",
-                        at_least(0.0)),
+                        at_least(0.0))
+                  .changeable(),
               parameter("traction_floor", &Options::traction_floor, "Pa",
-                        "change of the traction (norm over all values) that always passes", at_least(0.0)),
+                        "change of the traction (norm over all values) that always passes", at_least(0.0))
+                  .changeable(),
               parameter("max_iterations", &Options::max_iterations, "1", "evaluations of both solvers in a step",
-                        at_least(1)),
+                        at_least(1))
+                  .changeable(),
               parameter("on_not_converged", &Options::on_not_converged, "", "what a step without convergence is",
-                        one_of("fail", "accept_with_warning"))},
+                        one_of("fail", "accept_with_warning"))
+                  .changeable()},
           profile_option(), sampling_option(), load_interpolation_option(), motion_option(), exchange_options());
     }
   };

@@ -32,6 +32,10 @@ constexpr Command commands[] = {
     {"modules", "[NAME]", "list modules and drivers, or the parameters and fields of one", &cli::run_modules},
     {"report", "DIR", "plots of a run or a study on one page", &cli::run_report},
     {"ps", "", "list the live runs", &cli::run_ps},
+    {"inspect", "RUN [WINDOW[.FIELD]]", "a live run's windows, fields, values, timings", &cli::run_inspect},
+    {"set", "RUN KEY=VALUE…", "change parameters of a live run", &cli::run_set},
+    {"swap", "RUN KIND=MODULE", "swap a module in a live run at the next step", &cli::run_swap},
+    {"checkpoint", "RUN", "have a live run write a checkpoint", &cli::run_checkpoint},
     {"stop", "RUN", "end a live run cleanly at the next step", &cli::run_stop},
 };
 
@@ -40,7 +44,7 @@ void print_help()
   fmt::print("usage: mullion COMMAND [arguments]\n\n"
              "Partitioned fluid-structure co-simulation on shared memory.\n\ncommands:\n");
   for (const auto& command : commands)
-    fmt::print("  {:<24} {}\n", fmt::format("{} {}", command.name, command.arguments), command.summary);
+    fmt::print("  {:<28} {}\n", fmt::format("{} {}", command.name, command.arguments), command.summary);
   fmt::print("\n  mullion COMMAND --help   all about one command\n"
              "  mullion --version        version, plug-in ABI and build id\n\n"
              "exit codes: 0 ok, 1 the run failed, 2 the command line or the case is wrong\n");

@@ -32,7 +32,9 @@ TEST_CASE("mullion alone and --help show the commands")
 
     CHECK(result.exit_code == 0);
     CHECK(result.err == "");
-    for (const char* command : {"run CASE", "check CASE", "study STUDY", "modules [NAME]", "report DIR", "ps", "stop RUN"})
+    for (const char* command :
+         {"run CASE", "check CASE", "study STUDY", "modules [NAME]", "report DIR", "ps", "stop RUN",
+          "inspect RUN [WINDOW[.FIELD]]", "set RUN KEY=VALUE", "swap RUN KIND=MODULE", "checkpoint RUN"})
       CHECK(has(result.out, command));
   }
 }
@@ -43,12 +45,12 @@ TEST_CASE("--version names the version, the plug-in ABI and the build")
 
   CHECK(result.exit_code == 0);
   CHECK(result.out.rfind("mullion ", 0) == 0);
-  CHECK(has(result.out, "plug-in ABI 1"));
+  CHECK(has(result.out, "plug-in ABI 2"));
 }
 
 TEST_CASE("each command has a help")
 {
-  for (const char* command : {"check", "modules", "report"}) {
+  for (const char* command : {"check", "modules", "report", "inspect", "set", "swap", "checkpoint"}) {
     const auto result = mullion_command({command, "--help"});
 
     CHECK(result.exit_code == 0);

@@ -49,6 +49,15 @@ PluginCase in_a_mode(PluginCase c)
   return c;
 }
 
+/// The arch that closes a box of gas, for 40 steps: solvers in the plane, meshes that do not match.
+PluginCase boxed(const std::string& scheme, std::vector<std::string> options)
+{
+  std::vector<std::string> sets = {"run.end_time=4.0e-4", "output.every=10", "fluid.mesh=box_arch:10x6,height=0.2",
+                                   "structure.mesh=arch:7x1", "driver.scheme=" + scheme};
+  for (auto& option : options) sets.push_back(option.find('.') < option.find('=') ? option : "driver." + option);
+  return {"configs/paper/closed_box.toml", sets};
+}
+
 /// The transfers there and back of `mullion transfer-test`, in 40 steps that differ: two meshes of a twisted wing, or,
 /// where a mesh is among the options, others.
 PluginCase probed(const std::string& method, std::vector<std::string> options)
@@ -109,6 +118,27 @@ const std::vector<PluginCase> cases = {
     {"tests/verification/added_mass.toml",
      {"run.end_time=4.0e-3", "output.every=10", "driver.reuse=3", "structure.density=75.0"}}, // without a mesh to move
     {"tests/contract/uncoupled.toml", {}},
+    {"configs/sod_tube.toml", {"run.end_time=0.04", "output.every=10", "fluid.mesh=box:40x2,triangles,size=1x0.05"}},
+    {"configs/sod_tube.toml",
+     {"run.end_time=0.04", "output.every=10", "fluid.mesh=box:40x2,size=1x0.05", "fluid.time_stepping=local",
+      "fluid.first_order_iterations=10", "fluid.limiter=none"}},
+    boxed("css", {"fluid.substeps=2", "fluid.threads=2"}),
+    boxed("css_parallel", {"mesh_motion.module=elastic_mesh", "structure_receives=traction"}),
+    boxed("gss", {"structure.substeps=2", "transfer.module=quadrature_projection"}),
+    boxed("iss", {"fluid.flux=roe", "fluid.integrator=rk4"}),
+    boxed("cibc", {"half_offset=true", "fluid_density=1.3", "omega=7.5e-4", "omega_check=warn",
+                   "subtract_gradient=true", "acceleration=difference", "w_end=false"}),
+    boxed("cibc", {"fluid_density=1.3", "omega=7.5e-4", "omega_check=warn", "structure_receives=traction"}),
+    boxed("strong", {"transfer.offsets=rigid_link"}),
+    {"configs/paper/flow_shell.toml",
+     {"run.end_time=4.0e-4", "output.every=10", "fluid.mesh=duct_arch:10x8,largest=0.4,growth=1.3",
+      "fluid.steady_iterations=20", "fluid.first_order_iterations=10", "structure.mesh=arch:7x1"}},
+    {"configs/paper/elastic_piston.toml",
+     {"run.end_time=2.0e-5", "run.dt=5e-7", "output.every=10", "fluid.mesh=box:20x8,size=0.25x0.1,origin=-0.25:0",
+      "structure.mesh=box:35x7,size=0.5x0.1", "transfer.module=node_projection"}},
+    {"configs/paper/superseismic_lite.toml",
+     {"run.end_time=2.0e-5", "run.dt=5e-7", "output.every=10", "fluid.mesh=box:32x16,size=0.8x0.4",
+      "structure.mesh=box:28x14,size=0.8x0.4,origin=0:-0.4"}},
     probed("common_refinement", {"transfer.motion=adjoint"}),
     probed("common_refinement", {"driver.fluid_exports=traction", "fluid.on=faces", "driver.structure_receives=load",
                                  "transfer.metric=average", "transfer.mass=native"}),

@@ -41,9 +41,8 @@ constexpr const char* is_inline = "module 'structure' (faulty_structure, inline)
 
 TEST_CASE("an exception in a module, in a process or inline, ends the run with its text and the module's name")
 {
-  for (const auto& [fault, text] :
-       std::map<std::string, std::string>{{"throw", "did not want to go on"},
-                                          {"throw_foreign", "threw something that is no std::exception"}})
+  for (const auto& [fault, text] : std::map<std::string, std::string>{
+           {"throw", "did not want to go on"}, {"throw_foreign", "threw something that is no std::exception"}})
     for (const auto& place : places)
       for (const bool is_process : {true, false}) {
         CAPTURE(fault);
@@ -247,7 +246,7 @@ TEST_CASE("plug-ins of another ABI or another build are refused before anything 
   const auto other_build = folder.run(test::piston({"driver.scheme=wrong_build"}));
 
   CHECK(other_abi.exit_code == 2);
-  CHECK(has(other_abi.err, "wrong_abi.so: built for plug-in ABI 999, this mullion has ABI 1"));
+  CHECK(has(other_abi.err, "wrong_abi.so: built for plug-in ABI 999, this mullion has ABI 2"));
   CHECK(other_build.exit_code == 2);
   CHECK(has(other_build.err, "wrong_build.so: compiled against another build of libmullion"));
   CHECK(!std::filesystem::exists(folder / "out"));

@@ -31,5 +31,9 @@ int run_transfer_test(const Arguments& arguments); // transfer_test.cpp
 int run_report(const Arguments& arguments);        // report.cpp
 int run_ps(const Arguments& arguments);            // ps.cpp
 int run_stop(const Arguments& arguments);          // stop.cpp
+int run_inspect(const Arguments& arguments);       // inspect.cpp
+int run_set(const Arguments& arguments);           // set.cpp
+int run_swap(const Arguments& arguments);          // swap.cpp
+int run_checkpoint(const Arguments& arguments);    // checkpoint.cpp
 
 } // namespace mullion::cli

@@ -49,8 +49,12 @@ std::string default_text(const mullion_parameter_spec& spec)
 
 ParameterRow row_of(const mullion_parameter_spec& spec)
 {
-  return {spec.name,          name_of(types, spec.type), or_nothing(spec.unit),
-          default_text(spec), config::range_text(spec),  or_nothing(spec.meaning)};
+  return {spec.name,
+          name_of(types, spec.type),
+          or_nothing(spec.unit),
+          default_text(spec),
+          config::range_text(spec),
+          or_nothing(spec.meaning) + (spec.is_changeable != 0 ? "; changeable" : "")};
 }
 
 FunctionRow row_of(const mullion_function_spec& spec)

@@ -1,5 +1,6 @@
 // The host: a lean process that carries one module. It maps the control object read-only, its own windows and its
-// reply object read-write, everything else read-only, and answers one request after another.
+// reply object read-write, everything else read-only, and answers one request after another. While it is parked,
+// because another carrier of its module is on trial, its own windows are read-only too.
 //
 // When the orchestrator dies the kernel kills us (PDEATHSIG); when we die the orchestrator learns it from a pidfd.
 // Our standard output and error are pipes that the orchestrator drains; a line that starts with \1 and a digit is
@@ -74,9 +75,10 @@ void install_fault_handler()
 class Host {
 public:
   Host(const shm::Control& control, shm::Reply& reply, std::uint32_t module, std::uint32_t incarnation)
-      : control_(control), record_(control.modules[module]), reply_(reply), incarnation_(incarnation),
-        windows_(control, module, false), runtime_(windows_, module, write_log)
+      : control_(control), record_(control.modules[module]), reply_(reply), incarnation_(incarnation), module_(module),
+        windows_(control, false), runtime_(windows_, module, write_log)
   {
+    windows_.allow(module_);
     fault_windows = &windows_;
   }
 
@@ -135,6 +137,8 @@ private:
     case Operation::seal: return runtime_.seal();
     case Operation::step:
     case Operation::call: return runtime_.run(request, reply_.results);
+    case Operation::park: return windows_.forbid(module_);
+    case Operation::resume: return windows_.allow(module_);
     case Operation::none:
     case Operation::quit: break;
     }
@@ -152,7 +156,7 @@ private:
   const shm::Control& control_;
   const shm::ModuleRecord& record_;
   shm::Reply& reply_;
-  std::uint32_t incarnation_;
+  std::uint32_t incarnation_, module_;
   shm::WindowMap windows_;
   module::ModuleRuntime runtime_;
   std::vector<module::ModuleRuntime::Defined> defined_;

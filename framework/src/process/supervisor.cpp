@@ -157,15 +157,16 @@ void Supervisor::loop()
 {
   while (!is_over_) {
     std::vector<pollfd> polled{{wake_.get(), POLLIN, 0}, {signals_.get(), POLLIN, 0}};
-    polled.push_back({socket_ != nullptr ? socket_->descriptor() : -1, POLLIN, 0});
-    const auto first_host = polled.size();
+    const std::size_t first_host = polled.size();
     for (const auto& host : hosts_) {
       polled.push_back({host->pidfd.get(), POLLIN, 0});
       polled.push_back({host->out.get(), POLLIN, 0});
       polled.push_back({host->err.get(), POLLIN, 0});
     }
-    if (::poll(polled.data(), polled.size(), -1) < 0) continue; // EINTR
-    const auto polled_hosts = hosts_;                           // tasks below may change the list
+    if (socket_ != nullptr) socket_->watch(polled);
+    const int patience = socket_ != nullptr ? socket_->patience() : -1;
+    if (::poll(polled.data(), polled.size(), patience) < 0) continue; // EINTR
+    const auto polled_hosts = hosts_;                                 // tasks below may change the list
     for (std::size_t h = 0; h < polled_hosts.size(); ++h) {
       auto& host = *polled_hosts[h];
       const auto* events = &polled[first_host + 3 * h];
@@ -174,7 +175,7 @@ void Supervisor::loop()
     }
     std::erase_if(hosts_, [](const auto& host) { return host->is_dead.load(); });
     if (polled[1].revents != 0) on_signal();
-    if (polled[2].revents != 0 && socket_ != nullptr) serve_client();
+    if (socket_ != nullptr) socket_->serve(answer_);
     if (polled[0].revents != 0) run_tasks();
   }
 }
@@ -347,7 +348,7 @@ void Supervisor::pause_all()
 
 // ---- socket --------------------------------------------------------------------------------------------------
 
-void Supervisor::serve(RunSocket& socket, std::function<std::string(const std::string&)> answer)
+void Supervisor::serve(RunSocket& socket, Answer answer)
 {
   do_in_thread([&] {
     socket_ = &socket;
@@ -357,9 +358,10 @@ void Supervisor::serve(RunSocket& socket, std::function<std::string(const std::s
 
 void Supervisor::unserve()
 {
-  do_in_thread([&] { socket_ = nullptr; });
+  do_in_thread([&] {
+    if (socket_ != nullptr) socket_->serve(answer_); // the last replies, as far as they go at once
+    socket_ = nullptr;
+  });
 }
-
-void Supervisor::serve_client() { socket_->answer_one(answer_); }
 
 } // namespace mullion::process

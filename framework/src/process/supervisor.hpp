@@ -5,6 +5,7 @@
 // The main thread asks it to spawn and retire and reads flags; it never touches windows.
 #pragma once
 
+#include "process/run_socket.hpp"
 #include "shm/control.hpp"
 #include "shm/memory_object.hpp"
 
@@ -21,8 +22,6 @@
 #include <vector>
 
 namespace mullion::process {
-
-class RunSocket;
 
 /// A host process. `is_dead` is set, with everything else final, once it was reaped.
 struct Host {
@@ -64,11 +63,14 @@ public:
   [[nodiscard]] bool is_stopping() const { return is_stopping_.load(std::memory_order_relaxed); }
   void request_stop(const std::string& reason);
 
+  /// Of the control object, in this process.
+  [[nodiscard]] int control_fd() const { return control_fd_; }
+
   /// How long the run stood still under Ctrl-Z; deadlines don't count that time.
   [[nodiscard]] std::chrono::nanoseconds paused() const;
 
-  /// Serve the run's socket; `answer` is called in this thread with one line and returns one.
-  void serve(RunSocket& socket, std::function<std::string(const std::string&)> answer);
+  /// Serve the run's socket; `answer` is called in the supervisor's thread, which must not wait for anything there.
+  void serve(RunSocket& socket, Answer answer);
   void unserve(); ///< before what `answer` refers to goes
 
 private:
@@ -80,7 +82,6 @@ private:
   void reap(Host& host);
   void on_signal();
   void pause_all();
-  void serve_client();
 
   shm::Control& control_;
   int control_fd_;
@@ -96,7 +97,7 @@ private:
   std::chrono::steady_clock::time_point first_stop_signal_{};
   std::atomic<std::int64_t> paused_ns_{0}, pause_begin_ns_{0}; ///< begin 0: not paused
   RunSocket* socket_ = nullptr;                                ///< supervisor thread only
-  std::function<std::string(const std::string&)> answer_;
+  Answer answer_;
   std::thread thread_; ///< last: starts when everything else stands
 };
 

@@ -6,15 +6,20 @@
 
 #include <mullion/sdk/window.hpp>
 
+#include <atomic>
+#include <cstdint>
+
 namespace mullion::run {
 
 class Progress {
 public:
-  explicit Progress(std::int64_t n_steps);
+  /// @param n_steps  planned; it may change on the way
+  explicit Progress(const std::atomic<std::int64_t>& n_steps);
   void show(const TimeStep& done);
 
 private:
-  std::int64_t n_steps_, first_step_ = -1;
+  const std::atomic<std::int64_t>& n_steps_;
+  std::int64_t first_step_ = -1;
   Clock::time_point begin_, next_;
   std::int64_t next_look_ = 0;
   Clock::duration interval_;

@@ -308,6 +308,15 @@ void Recorder::collect_timings()
   attempt.timings.push_back({"mullion", "driver and commit", control_.step, rest, rest, 0.0});
 }
 
+void Recorder::note(const std::string& what, const std::string& instance, const std::string& detail)
+{
+  record_.attempts.back().events.push_back({control_.step, what, instance, detail});
+  // On disk at once, in case the run is killed; but a run that is steered all the time does not write all the time.
+  if (Clock::now() - noted_ < std::chrono::seconds(1)) return;
+  io::write_run_record(out_ / "run.json", record_);
+  noted_ = Clock::now();
+}
+
 void Recorder::finish(const std::string& outcome, const std::string& error) noexcept
 {
   auto& attempt = record_.attempts.back();

@@ -30,6 +30,8 @@ public:
   void begin(Session& session);
   /// After a commit.
   void record(const TimeStep& step);
+  /// What happened to a module or the driver on the way, for run.json: "swap", "set", …
+  void note(const std::string& what, const std::string& instance, const std::string& detail);
   /// Close all files, complete run.json. Never throws: a failure is logged.
   void finish(const std::string& outcome, const std::string& error) noexcept;
 
@@ -84,7 +86,7 @@ private:
   std::optional<InterfaceSummary> interface_summary_;
   std::unique_ptr<io::HistoryWriter> history_;
   std::unique_ptr<io::ResultsWriter> results_;
-  Clock::time_point begun_;
+  Clock::time_point begun_, noted_{};
   std::int64_t output_ns_ = 0; ///< spent in record()
 };
 

@@ -126,7 +126,7 @@ void Session::await(std::uint32_t index)
   if (module.operation != Operation::step && module.operation != Operation::call && !is_attach) return;
   auto& timing =
       is_attach ? module.timings.back() : module.timings[module.operation == Operation::step ? 0 : 1 + module.function];
-  ++timing.count;
+  timing.count += 1;
   timing.wall_ns += nanoseconds_since(module.begun);
   timing.work_ns += work_ns;
 }
@@ -173,7 +173,8 @@ std::string Session::where(const Module& module) const
 {
   const auto call = module.operation == Operation::call ? module.entries->functions[module.function].name
                                                         : shm::to_string(module.operation);
-  if (!is_running_) return fmt::format("in {}, before the first step", call);
+  if (!is_running_ && control_.step == 0) return fmt::format("in {}, before the first step", call);
+  if (!is_running_) return fmt::format("in {}, after step {}", call, control_.step.load());
   return fmt::format("in {}, step {}, t = {} s", call, module.step.index, module.step.begin);
 }
 

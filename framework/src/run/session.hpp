@@ -21,6 +21,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
@@ -59,6 +60,19 @@ public:
   /// Ask the hosts to quit; kills what does not.
   void shut_down();
 
+  // ---- another carrier of a module, or another driver object, between two steps (swap.cpp) ----
+  /// The candidate attaches to the windows as they are, read-only; then the carrier at work lets go of them and is
+  /// parked, and the candidate is on trial until keep() or take_back().
+  /// @throws Error Errc::plugin: it does not fit, or could not attach; nothing has changed
+  void try_module(std::uint32_t module, ModuleCase candidate, const mullion_module& entries);
+  /// The same for the driver with other parameters. @throws Error Errc::plugin: they would change what is connected
+  void try_driver(std::vector<ParameterValue> parameters);
+  [[nodiscard]] bool has_trial() const { return trial_.has_value(); }
+  /// Its first step was committed: the parked one goes. @pre case_ says what the candidate is
+  void keep();
+  /// Its first step failed: the parked one is at work again, and the step can be done once more.
+  void take_back();
+
   // ---- the driver's side ----
   void begin(std::uint32_t module, shm::Operation operation, std::uint32_t function, const TimeStep& step, double stamp,
              const double* arguments = nullptr, std::uint32_t n_arguments = 0);
@@ -81,6 +95,8 @@ public:
   [[nodiscard]] shm::WindowMap& windows() { return windows_; }
   [[nodiscard]] const Case& the_case() const { return case_; }
   [[nodiscard]] const std::vector<CallTiming>& timings(std::uint32_t module) const { return modules_[module].timings; }
+  /// The same for another thread, once the run is under way.
+  [[nodiscard]] std::vector<CallTiming> timings_so_far(std::uint32_t module) const;
   /// Text for a post-mortem: the last lines of every host that died.
   [[nodiscard]] std::string post_mortem() const;
   /// What the driver declared: connections, state, net lag, …
@@ -94,14 +110,18 @@ public:
   [[nodiscard]] const std::vector<std::uint32_t>& write_order() const { return write_order_; }
 
 private:
-  struct Module {
+  /// What carries a module: a swap exchanges it.
+  struct Carrier {
     const ModuleCase* config = nullptr;
-    double clock_offset = 0.0; ///< [s] of its clock against the run's
     const mullion_module* entries = nullptr;
     std::unique_ptr<module::ModuleRuntime> runtime;           ///< inline
     std::shared_ptr<process::Host> host;                      ///< in a process
-    std::vector<std::uint32_t> windows;                       ///< its own
     std::vector<std::vector<std::uint32_t>> function_windows; ///< per function
+  };
+
+  struct Module : Carrier {
+    double clock_offset = 0.0;              ///< [s] of its clock against the run's
+    std::vector<std::uint32_t> windows;     ///< its own
     std::uint32_t conflicts = 0;            ///< modules that read its windows, or whose windows it reads, in place
     std::vector<FieldAddress> large_fields; ///< exchanged, and left to us by its runtime to check
     bool in_flight = false;
@@ -125,8 +145,25 @@ private:
     std::string call; ///< "module 'fluid' (…) failed in step, step 7, t = 0.1 s": the module may be called meanwhile
   };
 
+  /// A candidate at work, and what takes over again if its first step fails.
+  struct Trial {
+    std::uint32_t module = shm::no_module; ///< no_module: the driver is on trial
+    ModuleCase config;
+    std::vector<ParameterValue> driver_parameters;
+    std::optional<Wiring> wiring; ///< of the driver
+    Carrier parked;
+  };
+
+  // swap.cpp
+  void hand_over(std::uint32_t module, const TimeStep& at);
+  void restore_parked();
+  [[nodiscard]] TimeStep now() const; ///< for calls between two steps
+  void attach_driver();
+  void arrange_timings(Module& module);
+
   // setup.cpp
   void describe_modules();
+  void describe(std::uint32_t module); ///< its plug-in and parameters in the control object
   void spawn(std::uint32_t module);
   void call_all(shm::Operation operation, const TimeStep& step);
   void call(std::uint32_t module, shm::Operation operation, const TimeStep& step);
@@ -137,7 +174,9 @@ private:
   void make_companions();
   void make_driver_state();
   void find_ledger();
-  void make_driver();
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> find_function_windows(const std::string& instance,
+                                                                              const mullion_module& entries) const;
+  Wiring make_driver();
   void attach_again(const std::vector<std::uint32_t>& modules);
   void find_conflicts();
   Wiring make_wiring() const;
@@ -171,7 +210,10 @@ private:
   std::vector<Module> modules_;
   std::vector<shm::Descriptor> objects_; ///< of all windows: they live as long as this
   std::optional<Wiring> wiring_;
+  const std::vector<ParameterValue>* driver_parameters_;
   std::unique_ptr<Driver> driver_;
+  std::optional<Trial> trial_;
+  mutable std::mutex timings_mutex_; ///< held where the list of a module's timings changes, or is read elsewhere
   std::uint32_t state_window_ = shm::no_window;
   std::optional<Ledger> ledger_;
   std::vector<std::uint32_t> write_order_;

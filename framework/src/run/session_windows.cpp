@@ -63,17 +63,25 @@ void Session::adopt_windows(std::uint32_t m)
       throw Error(error.code(), fmt::format("{} made a bad window: {}", who(module), error.what()));
     }
   }
-  for (std::uint32_t f = 0; f < module.entries->n_functions; ++f) {
-    const std::string written = module.entries->functions[f].writes;
-    auto& windows = module.function_windows.emplace_back();
+  module.function_windows = find_function_windows(module.config->instance, *module.entries);
+}
+
+std::vector<std::vector<std::uint32_t>> Session::find_function_windows(const std::string& instance,
+                                                                       const mullion_module& entries) const
+{
+  std::vector<std::vector<std::uint32_t>> found;
+  for (std::uint32_t f = 0; f < entries.n_functions; ++f) {
+    const std::string written = entries.functions[f].writes;
+    auto& windows = found.emplace_back();
     if (written.empty()) continue;
-    const auto id = control_.find_window(module.config->instance + "/" + written);
+    const auto id = control_.find_window(instance + "/" + written);
     MULLION_REQUIRE(id != shm::no_window, Errc::shape,
                     "module '{}': its function '{}' writes window '{}', which it did "
                     "not make",
-                    module.config->instance, module.entries->functions[f].name, written);
+                    instance, entries.functions[f].name, written);
     windows.push_back(id);
   }
+  return found;
 }
 
 void Session::make_window(const shm::WindowPlan& plan, std::uint32_t module)

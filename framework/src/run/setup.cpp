@@ -29,12 +29,13 @@ std::pair<std::string, std::string> split_window(const std::string& path) // "fl
 Session::Session(const Case& the_case, plugin::Catalogue& catalogue, shm::Control& control,
                  process::Supervisor& supervisor, SessionOptions options)
     : case_(the_case), catalogue_(catalogue), control_(control), supervisor_(supervisor), options_(options),
-      windows_(control, shm::no_module, true), modules_(the_case.modules.size())
+      windows_(control, true), modules_(the_case.modules.size()), driver_parameters_(&the_case.driver_parameters)
 {
 }
 
 Session::~Session()
 {
+  if (trial_ && trial_->parked.host != nullptr) supervisor_.kill(*trial_->parked.host);
   driver_.reset();
   for (auto& module : modules_)
     if (module.host != nullptr) supervisor_.kill(*module.host);
@@ -101,7 +102,7 @@ std::string Session::recover()
 
 void Session::attach_again(const std::vector<std::uint32_t>& modules)
 {
-  const TimeStep at{control_.step.load(), control_.time.load(), control_.time.load(), case_.dt, 0};
+  const auto at = now();
   is_running_ = false; // the start-up deadline holds
   shm::roll_back(control_);
   for (const auto m : modules) spawn(m);
@@ -138,8 +139,6 @@ void Session::describe_modules()
     };
     copy(record.name, module.config->instance, "instance name");
     copy(record.kind, module.config->kind, "kind");
-    copy(record.plugin, module.config->plugin, "plug-in name");
-    copy(record.path, module.config->path, "plug-in path");
     record.is_inline = module.config->is_process ? 0 : 1;
     for (const auto& offset : wiring_->clock_offsets)
       if (offset.instance == module.config->instance) module.clock_offset = offset.steps * case_.dt;
@@ -153,26 +152,36 @@ void Session::describe_modules()
         copy(slot.window, window, "window name");
         slot.n_slots = static_cast<std::uint32_t>(history.committed_levels) + 1;
       }
-    MULLION_REQUIRE(module.config->parameters.size() <= shm::max_parameters, Errc::config,
-                    "plug-in {} has more than {} parameters", module.config->plugin, shm::max_parameters);
-    std::size_t used = 1; // offset 0 is the empty text
-    for (const auto& value : config::to_values(module.config->parameters)) {
-      auto& parameter = record.parameters[record.n_parameters++];
-      parameter = {value.real, value.integer, 0, 0};
-      const std::size_t length = std::strlen(value.text);
-      if (length == 0) continue;
-      MULLION_REQUIRE(used + length + 1 <= sizeof record.text, Errc::config,
-                      "the texts among the parameters of '{}' are longer than {} characters together", record.name,
-                      sizeof record.text);
-      std::memcpy(record.text + used, value.text, length + 1);
-      parameter.text_offset = static_cast<std::uint32_t>(used);
-      used += length + 1;
-    }
+    describe(m);
     module.timings.push_back({"step"});
     for (std::uint32_t f = 0; f < module.entries->n_functions; ++f)
       module.timings.push_back({module.entries->functions[f].name});
     module.timings.push_back({attach_call});
     control_.n_modules = m + 1;
+  }
+}
+
+void Session::describe(std::uint32_t m)
+{
+  const auto& config = *modules_[m].config;
+  auto& record = control_.modules[m];
+  shm::copy_text(record.plugin, sizeof record.plugin, config.plugin, "plug-in name");
+  shm::copy_text(record.path, sizeof record.path, config.path, "plug-in path");
+  MULLION_REQUIRE(config.parameters.size() <= shm::max_parameters, Errc::config,
+                  "plug-in {} has more than {} parameters", config.plugin, shm::max_parameters);
+  record.n_parameters = 0;
+  std::size_t used = 1; // offset 0 is the empty text
+  for (const auto& value : config::to_values(config.parameters)) {
+    auto& parameter = record.parameters[record.n_parameters++];
+    parameter = {value.real, value.integer, 0, 0};
+    const std::size_t length = std::strlen(value.text);
+    if (length == 0) continue;
+    MULLION_REQUIRE(used + length + 1 <= sizeof record.text, Errc::config,
+                    "the texts among the parameters of '{}' are longer than {} characters together", record.name,
+                    sizeof record.text);
+    std::memcpy(record.text + used, value.text, length + 1);
+    parameter.text_offset = static_cast<std::uint32_t>(used);
+    used += length + 1;
   }
 }
 
@@ -215,12 +224,13 @@ Wiring Session::make_wiring() const
   return {std::move(interfaces), std::move(instances)};
 }
 
-void Session::make_driver()
+Wiring Session::make_driver()
 {
-  const auto values = config::to_values(case_.driver_parameters);
+  const auto values = config::to_values(*driver_parameters_);
   driver_.reset(catalogue_.open(case_.scheme).driver().create(values.data()));
   auto wiring = make_wiring(); // a driver may look at it in define; the connections are already made
   driver_->define(wiring);
+  return wiring;
 }
 
 } // namespace mullion::run

@@ -6,6 +6,7 @@
 #include "process/guard.hpp"
 #include "process/run_socket.hpp"
 #include "run/audit.hpp"
+#include "run/commands.hpp"
 #include "run/progress.hpp"
 #include "run/recorder.hpp"
 #include "run/session.hpp"
@@ -16,6 +17,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <unistd.h>
 
 namespace mullion {
@@ -32,24 +34,12 @@ void print_error(const std::string& text)
 /// 2 where the command or the case is wrong, 1 where the run failed.
 int exit_code_of(Errc code) { return code == Errc::config || code == Errc::plugin ? 2 : 1; }
 
-std::string answer(shm::Control& control, process::Supervisor& supervisor, const std::string& line)
-{
-  if (line == "status")
-    return fmt::format(R"({{"name":"{}","pid":{},"step":{},"steps":{},"time":{}}})", control.run_name,
-                       control.guard_pid, control.step.load(), control.n_steps.load(), control.time.load());
-  if (line == "stop") {
-    supervisor.request_stop("mullion stop");
-    return "ok";
-  }
-  return fmt::format("error: unknown command '{}'", line);
-}
-
 /// The steps of the run. @return why it ended early, or ""
 std::string run_steps(const RunOptions& options, run::Session& session, process::Supervisor& supervisor,
-                      const run::TimePlan& plan, run::Recorder& recorder)
+                      run::TimePlan& plan, run::Recorder& recorder, run::Commands& commands)
 {
   auto& control = session.control();
-  run::Progress progress(plan.n_steps());
+  run::Progress progress(control.n_steps);
   run::Audit audit;
   const auto attempt_once = [&](const TimeStep& step) {
     session.begin_attempt();
@@ -62,10 +52,11 @@ std::string run_steps(const RunOptions& options, run::Session& session, process:
       throw Error(Errc::numeric, fmt::format("{} ({})", error.what(), hint));
     }
   };
-  const auto attempt = [&](const TimeStep& step) {
+  const std::function<void(const TimeStep&)> attempt = [&](const TimeStep& step) {
     try {
       attempt_once(step);
     } catch (const Error& error) {
+      if (commands.take_back(step, error.what())) return attempt(step);
       if (session.the_case().on_failure != "respawn" || error.code() != Errc::process) throw;
       const auto respawned = session.recover();
       if (respawned.empty()) throw;
@@ -75,6 +66,7 @@ std::string run_steps(const RunOptions& options, run::Session& session, process:
     }
   };
   for (std::int64_t n = control.step + 1; n <= plan.n_steps(); ++n) {
+    commands.at_boundary(plan);
     const auto step = plan.step(n);
     attempt(step);
     if (options.replay) {
@@ -89,6 +81,7 @@ std::string run_steps(const RunOptions& options, run::Session& session, process:
       audit.compare(session, step, "fresh processes and a new driver (--amnesia)");
     }
     session.commit(step);
+    commands.committed(step);
     recorder.record(step);
     progress.show(step);
     if (supervisor.is_stopping() && n < plan.n_steps()) return supervisor.stop_reason();
@@ -103,7 +96,7 @@ int orchestrate(const RunOptions& options, shm::Control& control, int control_fd
     std::fputs(describe(options.case_file, the_case.diagnostics).c_str(), stderr);
     return 2;
   }
-  const Case& c = the_case.value;
+  Case& c = the_case.value; // as it stands: a live run can be changed
   shm::copy_text(control.run_name, sizeof control.run_name, c.name, "run name");
   process::RunSocket socket(c.name, control.guard_pid);
 
@@ -112,15 +105,17 @@ int orchestrate(const RunOptions& options, shm::Control& control, int control_fd
   plugin::Catalogue catalogue;
   run::Recorder recorder(c, out, control);
   run::Session session(c, catalogue, control, supervisor, {options.replay, options.has_deadlines});
+  run::Commands commands(c, session, supervisor, recorder);
   try {
-    supervisor.serve(socket, [&](const std::string& line) { return answer(control, supervisor, line); });
+    supervisor.serve(socket, [&](const auto& line, const auto& reply) { commands.answer(line, reply); });
     session.start_fresh();
-    const run::TimePlan plan(c, session.wiring().needs_constant_step);
+    run::TimePlan plan(c, session.wiring().needs_constant_step);
     control.n_steps = plan.n_steps();
     control.state = shm::RunState::running;
     recorder.begin(session);
     log::info("run", "{}: {} steps of {} s, results in {}", c.name, plan.n_steps(), c.dt, out.string());
-    const auto stopped_by = run_steps(options, session, supervisor, plan, recorder);
+    const auto stopped_by = run_steps(options, session, supervisor, plan, recorder, commands);
+    commands.finish();
     log::show_progress("");
     recorder.summarise_interface();
     session.shut_down();
@@ -130,6 +125,7 @@ int orchestrate(const RunOptions& options, shm::Control& control, int control_fd
     return 0;
   } catch (const std::exception& error) {
     log::show_progress("");
+    commands.finish();
     supervisor.unserve();
     recorder.finish("failed", error.what());
     if (const auto text = session.post_mortem(); !text.empty()) io::write_atomically(out / "post-mortem.txt", text);

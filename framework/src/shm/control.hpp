@@ -74,7 +74,9 @@ struct ParameterRecord {
   std::uint32_t text_offset, reserved;
 };
 
-enum class Operation : std::uint32_t { none, create, define, attach, start, seal, step, call, quit };
+/// park: give up the right to write the own windows, so that another carrier of the module can have it; resume: take
+/// it (back).
+enum class Operation : std::uint32_t { none, create, define, attach, start, seal, step, call, quit, park, resume };
 
 enum RequestFlag : std::uint32_t {
   arm_state = 1,    ///< copy carried state from level -1 (the first act of a step)

@@ -7,12 +7,12 @@ namespace mullion::shm {
 bool WindowMap::may_write(const WindowRecord& record) const
 {
   if (record.owner == Owner::orchestrator) return is_orchestrator_;
-  return record.module == writable_module_ || (inline_modules_ >> record.module & 1u) != 0;
+  return (writable_modules_ >> record.module & 1u) != 0;
 }
 
 void WindowMap::forbid(std::uint32_t module)
 {
-  inline_modules_ &= ~(1u << module);
+  writable_modules_ &= ~(1u << module);
   for (std::uint32_t w = 0; w < control_.n_windows; ++w)
     if (control_.windows[w].owner == Owner::module && control_.windows[w].module == module) entries_[w] = {};
 }

@@ -11,18 +11,15 @@ namespace mullion::shm {
 
 class WindowMap {
 public:
-  /// @param writable_module  the module whose windows this process may write (no_module: none)
-  /// @param is_orchestrator  companions and driver/state are writable
-  WindowMap(const Control& control, std::uint32_t writable_module, bool is_orchestrator)
-      : control_(control), writable_module_(writable_module), is_orchestrator_(is_orchestrator)
-  {
-  }
+  /// Read-only, but for what the orchestrator owns (companions, driver/state) in the orchestrator.
+  WindowMap(const Control& control, bool is_orchestrator) : control_(control), is_orchestrator_(is_orchestrator) {}
 
   /// The checked window, mapped with the right that this process has. @throws Error Errc::memory
   const WindowView& view(std::uint32_t window);
 
-  /// An inline module's windows become writable in the orchestrator.
-  void allow(std::uint32_t module) { inline_modules_ |= 1u << module; }
+  /// A module's windows become writable here: in the orchestrator an inline one's, in a host its own.
+  void allow(std::uint32_t module) { writable_modules_ |= 1u << module; }
+  /// Its windows are unmapped, and mapped read-only when next looked at.
   void forbid(std::uint32_t module);
 
   [[nodiscard]] const Control& control() const { return control_; }
@@ -48,9 +45,8 @@ private:
   [[nodiscard]] bool may_write(const WindowRecord& record) const;
 
   const Control& control_;
-  std::uint32_t writable_module_;
   bool is_orchestrator_;
-  std::uint32_t inline_modules_ = 0;
+  std::uint32_t writable_modules_ = 0;
   std::array<Entry, max_windows> entries_;
 };
 

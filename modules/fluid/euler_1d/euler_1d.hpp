@@ -40,13 +40,15 @@ public:
           parameter("left_end", &Options::left_end, "", "rigid wall, or open to the undisturbed gas",
                     one_of("closed", "open")),
           parameter("limiter", &Options::limiter, "", "of the linear reconstruction; van_albada for shocks",
-                    one_of("none", "van_albada")),
+                    one_of("none", "van_albada"))
+              .changeable(),
           parameter("initial", &Options::initial, "", "gas at rest, or an acoustic mode of the coupled problem",
                     one_of("rest", "mode")),
           parameter("mode_amplitude", &Options::mode_amplitude, "m", "initial = mode: wall displacement A"),
           parameter("mode_angular_frequency", &Options::mode_angular_frequency, "rad/s",
                     "initial = mode: eigenvalue omega of the coupled problem", at_least(0.0)),
-          parameter("substeps", &Options::substeps, "1", "fluid steps within one coupling step", at_least(1)),
+          parameter("substeps", &Options::substeps, "1", "fluid steps within one coupling step", at_least(1))
+              .changeable(),
           parameter("reference_pressure", &Options::reference_pressure, "Pa",
                     "p_ref, subtracted from the exported traction; given in [coupling]")};
     }

@@ -30,8 +30,8 @@ public:
     static constexpr auto table()
     {
       return std::tuple{
-          parameter("density", &Options::density, "kg/m^3", "mass per reference volume", above(0.0)),
-          parameter("youngs_modulus", &Options::youngs_modulus, "Pa", "E_s", above(0.0)),
+          parameter("density", &Options::density, "kg/m^3", "mass per reference volume", above(0.0)).changeable(),
+          parameter("youngs_modulus", &Options::youngs_modulus, "Pa", "E_s", above(0.0)).changeable(),
           parameter("length", &Options::length, "m", "L_s", above(0.0)),
           parameter("area", &Options::area, "m^2", "cross-section", above(0.0)),
           parameter("elements", &Options::elements, "1", "number of equal linear elements", at_least(1)),
@@ -45,7 +45,8 @@ public:
           parameter("mode_amplitude", &Options::mode_amplitude, "m", "initial = mode: displacement of the loaded end"),
           parameter("mode_angular_frequency", &Options::mode_angular_frequency, "rad/s",
                     "initial = mode: eigenvalue omega of the coupled problem", at_least(0.0)),
-          parameter("substeps", &Options::substeps, "1", "structural steps within one coupling step", at_least(1))};
+          parameter("substeps", &Options::substeps, "1", "structural steps within one coupling step", at_least(1))
+              .changeable()};
     }
   };
 

@@ -85,7 +85,7 @@ void FaultyStructure::step(const TimeStep& step)
 
 void FaultyStructure::misbehave(const std::string& call, std::int64_t step)
 {
-  if (call != options_.at || (call == "step" && step != options_.at_step)) return;
+  if (call != options_.at || (call == "step" && options_.at_step != 0 && step != options_.at_step)) return;
   const auto& fault = options_.fault;
   if (fault == "none" || fault == "unwritten" || fault == "huge") return; // elsewhere, if at all
   if (fault == "throw") throw std::runtime_error("did not want to go on");

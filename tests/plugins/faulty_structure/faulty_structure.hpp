@@ -27,16 +27,19 @@ public:
     static constexpr auto table()
     {
       return std::tuple{
-          parameter("mass", &Options::mass, "kg", "m", above(0.0)),
-          parameter("stiffness", &Options::stiffness, "N/m", "k", at_least(0.0)),
+          parameter("mass", &Options::mass, "kg", "m", above(0.0)).changeable(),
+          parameter("stiffness", &Options::stiffness, "N/m", "k", at_least(0.0)).changeable(),
           parameter("origin", &Options::origin, "m", "where the wet point lies at rest"),
           parameter("fault", &Options::fault, "",
                     "none, throw, throw_foreign, segfault, abort, exit, hang, slow, not_a_number, print, log, "
                     "unwritten, huge, garbage_window, stray_write, "
-                    "stray_write_peer or stray_write_fixed"),
-          parameter("at", &Options::at, "", "the call that misbehaves", one_of("define", "attach", "start", "step")),
-          parameter("at_step", &Options::at_step, "1", "at = step: in which one", at_least(1)),
-          parameter("duration", &Options::duration, "s", "fault = slow: how long", at_least(0.0))};
+                    "stray_write_peer or stray_write_fixed")
+              .changeable(),
+          parameter("at", &Options::at, "", "the call that misbehaves", one_of("define", "attach", "start", "step"))
+              .changeable(),
+          parameter("at_step", &Options::at_step, "1", "at = step: in which one; 0: in every one", at_least(0))
+              .changeable(),
+          parameter("duration", &Options::duration, "s", "fault = slow: how long", at_least(0.0)).changeable()};
     }
   };
 

@@ -16,7 +16,7 @@ struct ParameterRow {
   std::string unit;       ///< "1" for plain numbers, "" for texts and booleans
   std::string fallback;   ///< the default as TOML writes it; "required" if there is none
   std::string range;      ///< "> 0", "in [0, 1]", "a | b"; "" without limits
-  std::string meaning;
+  std::string meaning;    ///< ends in "; changeable" if `mullion set` may change it in a live run
 };
 
 struct FieldRow {

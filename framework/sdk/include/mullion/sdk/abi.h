@@ -15,7 +15,7 @@
 extern "C" {
 #endif
 
-#define MULLION_ABI 1u
+#define MULLION_ABI 2u
 #define MULLION_MAGIC UINT64_C(0x314e4f494c4c554d) /* "MULLION1" read as a little-endian number */
 #define MULLION_PLUGIN_SYMBOL "mullion_plugin"
 
@@ -55,9 +55,11 @@ typedef struct mullion_parameter_spec {
   const char* meaning;
   const char* const* choices; /* texts only: the legal values, or NULL */
   uint32_t n_choices;
-  uint32_t type;        /* mullion_type */
-  uint32_t is_required; /* 1: there is no default */
-  uint32_t excludes;    /* bit 0: lower is not legal itself; bit 1: upper is not legal itself */
+  uint32_t type;          /* mullion_type */
+  uint32_t is_required;   /* 1: there is no default */
+  uint32_t excludes;      /* bit 0: lower is not legal itself; bit 1: upper is not legal itself */
+  uint32_t is_changeable; /* 1: `mullion set` may change it in a live run, whose state lives in windows */
+  uint32_t reserved;
   double lower, upper;  /* range of a number; -inf, +inf where there is none */
   double default_real;
   int64_t default_integer; /* integers and booleans */

@@ -8,6 +8,8 @@
 //       return std::tuple{parameter("density", &Options::density, "kg/m^3", "mass per volume", above(0.0))};
 //     }
 //   };
+//
+// A trailing .changeable() lets `mullion set` change the parameter in a live run.
 #pragma once
 
 #include <mullion/sdk/abi.h>
@@ -51,6 +53,16 @@ template <class Owner, class T> struct Parameter {
   const char* meaning;
   Range range;
   bool is_required;
+  bool is_changeable = false;
+
+  /// `mullion set` may change it in a live run: an object with the new value goes on from the windows as they are.
+  /// Not for what sizes or fills windows in define (meshes, first states).
+  [[nodiscard]] constexpr Parameter changeable() const
+  {
+    auto copy = *this;
+    copy.is_changeable = true;
+    return copy;
+  }
 };
 
 /// A parameter with a default: the value that its member has in a fresh Options.
@@ -102,6 +114,7 @@ template <class Options> const std::vector<mullion_parameter_spec>& parameter_sp
             spec.type = parameter_type<T>();
             spec.is_required = p.is_required ? 1 : 0;
             spec.excludes = (p.range.excludes_lower ? 1u : 0u) | (p.range.excludes_upper ? 2u : 0u);
+            spec.is_changeable = p.is_changeable ? 1 : 0;
             spec.lower = p.range.lower;
             spec.upper = p.range.upper;
             if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) { // what the member can hold
