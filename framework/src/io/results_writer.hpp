@@ -37,6 +37,12 @@ public:
   /// @return how many those are; 0 if there is no index, or not one of ours
   std::size_t keep_outputs_before(std::int64_t step);
 
+  /// The same from the list that a checkpoint holds, which needs no index on the disk. An output whose file is gone is
+  /// left out.
+  void go_on_from(const OutputList& outputs);
+  [[nodiscard]] OutputList outputs() const { return index_.list(); }
+  [[nodiscard]] bool has_output(std::int64_t step) const;
+
   /// Write mesh.h5, here and now (so that a folder that can't be written fails at the start): reference coordinates,
   /// connectivity, and the fields of `windows` as those that never change. Called once.
   void begin(const std::vector<WindowData>& windows);
@@ -50,6 +56,9 @@ public:
   /// visible: then a restart from there finds all earlier outputs in the index.
   /// @throws Error Errc::io: an output or an index could not be written
   void flush();
+
+  /// From any thread: wait until the outputs that were handed over so far are on disk. @return are they?
+  [[nodiscard]] bool wait_for_outputs();
 
   /// flush() and end the thread.
   /// @throws Error Errc::io, once

@@ -189,6 +189,36 @@ void XdmfIndex::read(std::string_view text, std::int64_t step)
   outputs_ = std::move(found);
 }
 
+OutputList XdmfIndex::list() const
+{
+  OutputList list;
+  std::map<const std::string*, std::int64_t> numbers;
+  for (const auto& output : outputs_) {
+    const auto [number, is_new] =
+        numbers.try_emplace(output.layout, static_cast<std::int64_t>(list.texts.size()));
+    if (is_new) list.texts.push_back(*output.layout);
+    list.steps.push_back(output.step);
+    list.times.push_back(output.time);
+    list.layouts.push_back(number->second);
+  }
+  return list;
+}
+
+void XdmfIndex::restore(const OutputList& list)
+{
+  MULLION_REQUIRE(list.steps.size() == list.times.size() && list.steps.size() == list.layouts.size(), Errc::io,
+                  "a list of outputs has {} steps, {} times and {} layouts", list.steps.size(), list.times.size(),
+                  list.layouts.size());
+  std::vector<Output> found;
+  for (std::size_t i = 0; i < list.steps.size(); ++i) {
+    const auto layout = list.layouts[i];
+    MULLION_REQUIRE(0 <= layout && static_cast<std::size_t>(layout) < list.texts.size(), Errc::io,
+                    "the output of step {} has layout {} of {}", list.steps[i], layout, list.texts.size());
+    found.push_back({list.steps[i], list.times[i], intern(list.texts[static_cast<std::size_t>(layout)])});
+  }
+  outputs_ = std::move(found);
+}
+
 std::string XdmfIndex::text() const
 {
   std::size_t size = head.size() + tail.size();

@@ -21,6 +21,15 @@ namespace mullion::io {
 /// The name of an output: its step with at least nine digits, so that names sort as steps do.
 [[nodiscard]] std::string output_name(std::int64_t step);
 
+/// The outputs of an index as plain data, for a checkpoint: as many steps, times and layouts, and the few texts that
+/// these number.
+struct OutputList {
+  std::vector<std::int64_t> steps;
+  std::vector<double> times;
+  std::vector<std::int64_t> layouts;
+  std::vector<std::string> texts;
+};
+
 class XdmfIndex {
 public:
   /// The meshes and the fixed fields of all later outputs.
@@ -32,6 +41,10 @@ public:
 
   /// Take over the outputs before `step` of the index `text`. Anything unexpected in it: nothing is taken.
   void read(std::string_view text, std::int64_t step);
+
+  [[nodiscard]] OutputList list() const;
+  /// @throws Error Errc::io: the lists differ in length, or number a layout that is not there
+  void restore(const OutputList& list);
 
   struct Output {
     std::int64_t step;

@@ -10,11 +10,12 @@ namespace mullion::run {
 
 class Progress {
 public:
-  explicit Progress(std::int64_t n_steps);
-  void show(const TimeStep& done);
+  Progress();
+  /// @param n_steps  how many there will be, as far as is known now
+  void show(const TimeStep& done, std::int64_t n_steps);
 
 private:
-  std::int64_t n_steps_, first_step_ = -1;
+  std::int64_t first_step_ = -1;
   Clock::time_point begin_, next_;
   std::int64_t next_look_ = 0;
   Clock::duration interval_;

@@ -63,6 +63,12 @@ void Session::adopt_windows(std::uint32_t m)
       throw Error(error.code(), fmt::format("{} made a bad window: {}", who(module), error.what()));
     }
   }
+  list_function_windows(m);
+}
+
+void Session::list_function_windows(std::uint32_t m)
+{
+  auto& module = modules_[m];
   for (std::uint32_t f = 0; f < module.entries->n_functions; ++f) {
     const std::string written = module.entries->functions[f].writes;
     auto& windows = module.function_windows.emplace_back();

@@ -53,9 +53,7 @@ void Session::start_fresh()
   make_driver_state();
   find_conflicts();
   make_driver();
-  call_all(Operation::attach, initial);
-  Coupling coupling(this);
-  driver_->attach(coupling);
+  attach_all(initial);
 
   shm::roll_back(control_);
   if (state_window_ != shm::no_window) control_.working[state_window_].is_written = 1;
@@ -80,19 +78,29 @@ void Session::renew()
   attach_again(in_hosts);
 }
 
-std::string Session::recover()
+void Session::quiesce()
 {
-  std::vector<std::uint32_t> dead;
-  std::string names;
   for (std::uint32_t m = 0; m < modules_.size(); ++m) {
     try {
       await(m);
     } catch (const Error& error) {
-      log::debug("run", "while recovering: {}", error.what());
+      log::debug("run", "while waiting for calls of a failed step: {}", error.what());
     }
-    if (modules_[m].host == nullptr || !modules_[m].host->is_dead) continue;
+  }
+}
+
+std::vector<std::string> Session::recover()
+{
+  quiesce();
+  std::vector<std::uint32_t> dead;
+  std::vector<std::string> names;
+  for (std::uint32_t m = 0; m < modules_.size(); ++m) {
+    auto& module = modules_[m];
+    if (module.host == nullptr) continue;
+    if (!module.is_attached) supervisor_.kill(*module.host); // another one's death kept it from attaching
+    if (!module.host->is_dead) continue;
     dead.push_back(m);
-    names += (names.empty() ? "'" : ", '") + modules_[m].config->instance + "'";
+    names.push_back(module.config->instance);
   }
   if (!dead.empty()) attach_again(dead);
   return names;
@@ -108,6 +116,7 @@ void Session::attach_again(const std::vector<std::uint32_t>& modules)
     for (const auto m : modules) begin(m, operation, 0, at, at.end);
     for (const auto m : modules) await(m);
   }
+  for (const auto m : modules) modules_[m].is_attached = true;
   make_driver();
   Coupling coupling(this);
   driver_->attach(coupling);
@@ -177,6 +186,7 @@ void Session::describe_modules()
 void Session::spawn(std::uint32_t m)
 {
   auto& module = modules_[m];
+  module.is_attached = false;
   if (module.config->is_process) {
     module.host = supervisor_.spawn(m);
     return;
@@ -192,6 +202,14 @@ void Session::call(std::uint32_t module, Operation operation, const TimeStep& st
 {
   begin(module, operation, 0, step, step.end);
   await(module);
+}
+
+void Session::attach_all(const TimeStep& at)
+{
+  call_all(Operation::attach, at);
+  for (auto& module : modules_) module.is_attached = true;
+  Coupling coupling(this);
+  driver_->attach(coupling);
 }
 
 void Session::call_all(Operation operation, const TimeStep& step)

@@ -1,4 +1,4 @@
-// One run: case, session, the loop over coupling steps with its audits, results, and the end, good or bad.
+// One run: case or checkpoint, session, the loop over coupling steps with its audits, results, and the end, good or bad.
 #include <mullion/app/simulation.hpp>
 
 #include "io/atomic_file.hpp"
@@ -8,20 +8,21 @@
 #include "run/audit.hpp"
 #include "run/progress.hpp"
 #include "run/recorder.hpp"
+#include "run/recovery.hpp"
+#include "run/restart.hpp"
 #include "run/session.hpp"
+#include "run/step_clock.hpp"
 #include "run/summary.hpp"
-#include "run/time_plan.hpp"
 
 #include <mullion/sdk/error.hpp>
 
 #include <cstdio>
-#include <filesystem>
+#include <functional>
+#include <optional>
 #include <unistd.h>
 
 namespace mullion {
 namespace {
-
-namespace fs = std::filesystem;
 
 void print_error(const std::string& text)
 {
@@ -46,84 +47,112 @@ std::string answer(shm::Control& control, process::Supervisor& supervisor, const
 
 /// The steps of the run. @return why it ended early, or ""
 std::string run_steps(const RunOptions& options, run::Session& session, process::Supervisor& supervisor,
-                      const run::TimePlan& plan, run::Recorder& recorder)
+                      run::StepClock& clock, run::Recorder& recorder)
 {
-  auto& control = session.control();
-  run::Progress progress(plan.n_steps());
+  const auto& the_case = session.the_case();
+  run::Progress progress;
   run::Audit audit;
-  const auto attempt_once = [&](const TimeStep& step) {
-    session.begin_attempt();
-    try {
-      session.run_driver(step);
-      session.check_limits(step);
-    } catch (const Error& error) {
-      const auto& hint = session.wiring().divergence_hint;
-      if (error.code() != Errc::numeric || hint.empty()) throw;
-      throw Error(Errc::numeric, fmt::format("{} ({})", error.what(), hint));
-    }
-  };
+  run::Recovery recovery(session, recorder);
+  std::string stopped_by;
   const auto attempt = [&](const TimeStep& step) {
-    try {
-      attempt_once(step);
-    } catch (const Error& error) {
-      if (session.the_case().on_failure != "respawn" || error.code() != Errc::process) throw;
-      const auto respawned = session.recover();
-      if (respawned.empty()) throw;
-      log::warning("run", "{}; respawned {}, step {} is done again from the last commit", error.what(), respawned,
-                   step.index);
-      attempt_once(step); // the same failure again ends the run
-    }
-  };
-  for (std::int64_t n = control.step + 1; n <= plan.n_steps(); ++n) {
-    const auto step = plan.step(n);
-    attempt(step);
+    recovery.attempt(step);
     if (options.replay) {
       audit.keep(session);
-      attempt(step);
+      recovery.attempt(step);
       audit.compare(session, step, "the same instances (--replay)");
     }
-    if (options.amnesia > 0 && n % options.amnesia == 0) {
+    if (options.amnesia > 0 && step.index % options.amnesia == 0) {
       audit.keep(session);
       session.renew();
-      attempt(step);
+      recovery.attempt(step);
       audit.compare(session, step, "fresh processes and a new driver (--amnesia)");
     }
+  };
+  while (!clock.is_at_end()) {
+    const auto step = clock.next();
+    try {
+      attempt(step);
+    } catch (const Error& error) {
+      const bool may_halve = error.code() == Errc::numeric && the_case.on_divergence == "halve_dt";
+      if (!may_halve || !clock.halve(the_case.max_halvings)) throw;
+      session.quiesce();
+      session.control().n_steps = clock.n_steps();
+      recorder.note("halve_dt", "", error.what());
+      log::warning("run", "{}; step {} is done again with dt = {} s", error.what(), step.index, clock.next().dt);
+      continue;
+    }
     session.commit(step);
+    clock.advance();
+    recovery.forget();
     recorder.record(step);
-    progress.show(step);
-    if (supervisor.is_stopping() && n < plan.n_steps()) return supervisor.stop_reason();
+    progress.show(step, clock.n_steps());
+    if (supervisor.is_stopping() && !clock.is_at_end()) {
+      stopped_by = supervisor.stop_reason();
+      break;
+    }
   }
-  return "";
+  recovery.between_steps([&] { recorder.summarise_interface(); });
+  return stopped_by;
+}
+
+/// Bring the session to life. A module that dies meanwhile gets a second chance, from the very beginning, where
+/// deaths are mended at all.
+void start(std::optional<run::Session>& session, const std::function<void()>& make, const run::Begin& begin)
+{
+  const auto bring_to_life = [&] {
+    if (begin.restart) session->start_from(begin.restart->checkpoint, begin.restart->changed);
+    else session->start_fresh();
+  };
+  try {
+    make();
+    bring_to_life();
+  } catch (const Error& error) {
+    if (error.code() != Errc::process || begin.the_case.value.on_failure != "respawn") throw;
+    log::warning("run", "{}; the start-up is done again from the beginning", error.what());
+    make();
+    bring_to_life();
+  }
 }
 
 int orchestrate(const RunOptions& options, shm::Control& control, int control_fd)
 {
-  auto the_case = read_case(options.case_file, options.case_options);
-  if (!the_case.diagnostics.empty()) {
-    std::fputs(describe(options.case_file, the_case.diagnostics).c_str(), stderr);
+  const auto begin = run::begin_of(options);
+  if (!begin.the_case.diagnostics.empty()) {
+    const auto& file = options.case_file.empty() ? options.restart : options.case_file;
+    std::fputs(describe(file, begin.the_case.diagnostics).c_str(), stderr);
     return 2;
   }
-  const Case& c = the_case.value;
+  const Case& c = begin.the_case.value;
+  const auto* restart = begin.restart ? &*begin.restart : nullptr;
   shm::copy_text(control.run_name, sizeof control.run_name, c.name, "run name");
   process::RunSocket socket(c.name, control.guard_pid);
 
-  const fs::path out = options.out.empty() ? fs::path("out") / c.name : fs::path(options.out);
   process::Supervisor supervisor(control, control_fd);
   plugin::Catalogue catalogue;
-  run::Recorder recorder(c, out, control);
-  run::Session session(c, catalogue, control, supervisor, {options.replay, options.has_deadlines});
+  run::Recorder recorder(c, begin.out, control, restart);
+  std::optional<run::StepClock> clock;
+  std::optional<run::Session> session;
+  const auto make_session = [&] {
+    session.reset();
+    shm::forget_windows_and_modules(control);
+    session.emplace(c, catalogue, control, supervisor, run::SessionOptions{options.replay, options.has_deadlines});
+  };
   try {
     supervisor.serve(socket, [&](const std::string& line) { return answer(control, supervisor, line); });
-    session.start_fresh();
-    const run::TimePlan plan(c, session.wiring().needs_constant_step);
-    control.n_steps = plan.n_steps();
+    start(session, make_session, begin);
+    const bool needs_constant_step = session->wiring().needs_constant_step;
+    if (restart != nullptr) clock.emplace(c, needs_constant_step, restart->checkpoint.clock);
+    else clock.emplace(run::TimePlan(c, needs_constant_step));
+    control.n_steps = clock->n_steps();
     control.state = shm::RunState::running;
-    recorder.begin(session);
-    log::info("run", "{}: {} steps of {} s, results in {}", c.name, plan.n_steps(), c.dt, out.string());
-    const auto stopped_by = run_steps(options, session, supervisor, plan, recorder);
+    recorder.begin(*session, *clock);
+    if (restart != nullptr)
+      log::info("run", "goes on from {}: step {}, t = {} s", restart->file.string(), clock->step(), clock->time());
+    log::info("run", "{}: {} steps of {} s, results in {}", c.name, clock->n_steps(), c.dt, begin.out.string());
+    const auto stopped_by = run_steps(options, *session, supervisor, *clock, recorder);
     log::show_progress("");
-    recorder.summarise_interface();
-    session.shut_down();
+    if (!stopped_by.empty() || c.checkpoint_every > 0) recorder.save_last_commit();
+    session->shut_down();
     supervisor.unserve();
     recorder.finish(stopped_by.empty() ? "completed" : "stopped", stopped_by);
     if (options.has_summary) std::fputs(run::summary(recorder, stopped_by).c_str(), stdout);
@@ -131,8 +160,10 @@ int orchestrate(const RunOptions& options, shm::Control& control, int control_fd
   } catch (const std::exception& error) {
     log::show_progress("");
     supervisor.unserve();
+    recorder.save_last_commit();
     recorder.finish("failed", error.what());
-    if (const auto text = session.post_mortem(); !text.empty()) io::write_atomically(out / "post-mortem.txt", text);
+    if (const auto text = session ? session->post_mortem() : ""; !text.empty())
+      io::write_atomically(begin.out / "post-mortem.txt", text);
     throw;
   }
 }

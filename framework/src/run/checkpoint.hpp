@@ -1,0 +1,20 @@
+// From a live session to a checkpoint: its committed levels, described by spans into the windows, and the plug-ins that
+// made them. Nothing is copied here; the bytes of the file are built from this in one go, between two steps.
+#pragma once
+
+#include "io/checkpoint.hpp"
+#include "plugin/catalogue.hpp"
+#include "run/session.hpp"
+#include "run/step_clock.hpp"
+
+#include <vector>
+
+namespace mullion::run {
+
+/// The plug-ins of a case as a checkpoint names them: the build is a checksum of the library's file.
+[[nodiscard]] std::vector<io::CheckpointPlugin> plugins_of(const Case& the_case, plugin::Catalogue& catalogue);
+
+/// All that the session and the clock know of the last commit. Valid until the next one.
+[[nodiscard]] io::Checkpoint checkpoint_of(Session& session, const StepClock& clock);
+
+} // namespace mullion::run
