@@ -30,6 +30,7 @@ void write_clock(ImageBuilder& image, const CheckpointClock& clock)
   put("n_halvings", clock.n_halvings);
   put("n_parts", clock.n_parts);
   put("n_good", clock.n_good);
+  put("patience", clock.patience);
 }
 
 CheckpointClock read_clock(const ImageReader& image)
@@ -48,6 +49,7 @@ CheckpointClock read_clock(const ImageReader& image)
   integer("n_halvings", clock.n_halvings);
   integer("n_parts", clock.n_parts);
   integer("n_good", clock.n_good);
+  integer("patience", clock.patience);
   return clock;
 }
 

@@ -36,7 +36,8 @@ struct CheckpointClock {
   std::int64_t grid = 0, origin = 0;                    ///< whole coupling steps done; the one that times count from
   double grid_time = 0.0, next_time = 0.0;              ///< [s] of `grid` and of the whole step behind it
   double origin_time = 0.0;                             ///< [s]
-  std::int64_t n_halvings = 0, n_parts = 0, n_good = 0; ///< of the step at hand: halved so often, parts done
+  std::int64_t n_halvings = 0, n_parts = 0; ///< the step at hand is halved so often; parts of it that are done
+  std::int64_t n_good = 0, patience = 0;    ///< good steps since the last change of size, and how many it takes
 };
 
 /// What ran: to tell who comes back with another build of a plug-in.

@@ -174,17 +174,6 @@ ResultsWriter::~ResultsWriter()
 
 fs::path ResultsWriter::output_path(std::int64_t step) const { return results_ / (output_name(step) + ".h5"); }
 
-std::size_t ResultsWriter::keep_outputs_before(std::int64_t step)
-{
-  MULLION_ASSERT(index_.outputs().empty(), "outputs of earlier attempts come before those of this one");
-  std::error_code error;
-  const auto path = out_ / "results.xdmf";
-  if (!fs::exists(path, error)) return 0;
-  index_.read(read_text(path), step);
-  index_.keep_if([&](const XdmfIndex::Output& output) { return fs::exists(output_path(output.step), error); });
-  return index_.outputs().size();
-}
-
 void ResultsWriter::go_on_from(const OutputList& outputs)
 {
   MULLION_ASSERT(index_.outputs().empty(), "outputs of earlier attempts come before those of this one");

@@ -31,15 +31,10 @@ public:
   ResultsWriter(const ResultsWriter&) = delete;
   ResultsWriter& operator=(const ResultsWriter&) = delete;
 
-  /// After a restart in the same folder: the index goes on from the outputs of earlier attempts before `step`
-  /// whose files are still there. From the checkpoint of step K: keep_outputs_before(K + 1), as K's output is not
-  /// written again. Call before the first write().
-  /// @return how many those are; 0 if there is no index, or not one of ours
-  std::size_t keep_outputs_before(std::int64_t step);
-
-  /// The same from the list that a checkpoint holds, which needs no index on the disk. An output whose file is gone is
-  /// left out.
+  /// After a restart in the same folder: the index goes on from the outputs that the checkpoint lists, as far as their
+  /// files are there; files of other outputs are removed. Call before begin().
   void go_on_from(const OutputList& outputs);
+  /// The outputs so far, for a checkpoint.
   [[nodiscard]] OutputList outputs() const { return index_.list(); }
   [[nodiscard]] bool has_output(std::int64_t step) const;
 

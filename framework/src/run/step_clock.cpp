@@ -2,6 +2,7 @@
 
 #include <mullion/sdk/error.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace mullion::run {
@@ -32,6 +33,7 @@ StepClock::StepClock(const Case& c, bool needs_constant_step, const io::Checkpoi
   n_halvings_ = from.n_halvings;
   n_parts_ = from.n_parts;
   n_good_ = from.n_good;
+  patience_ = from.patience;
 }
 
 double StepClock::part_time(std::int64_t part) const
@@ -61,7 +63,7 @@ void StepClock::advance()
     n_parts_ = 0;
     ++grid_;
   }
-  if (n_halvings_ == 0 || n_good_ < patience || n_parts_ % 2 != 0) return;
+  if (n_halvings_ == 0 || n_good_ < patience_ || n_parts_ % 2 != 0) return;
   --n_halvings_;
   n_parts_ /= 2;
   n_good_ = 0;
@@ -73,6 +75,7 @@ bool StepClock::halve(std::int64_t most)
   ++n_halvings_;
   n_parts_ *= 2;
   n_good_ = 0;
+  patience_ = std::min(2 * patience_, most_patience);
   return true;
 }
 
@@ -90,6 +93,7 @@ io::CheckpointClock StepClock::state() const
   state.n_halvings = n_halvings_;
   state.n_parts = n_parts_;
   state.n_good = n_good_;
+  state.patience = patience_;
   return state;
 }
 

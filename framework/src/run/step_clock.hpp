@@ -38,8 +38,9 @@ public:
   [[nodiscard]] io::CheckpointClock state() const;
 
 private:
-  /// After so many good steps in a row a halved step is doubled again, where the parts fit.
-  static constexpr std::int64_t patience = 8;
+  /// After so many good steps in a row a halved step is doubled again, where the parts fit. Each failure doubles the
+  /// patience: what diverges slowly has spoilt the state before it is noticed, and ever new tries spoil it more.
+  static constexpr std::int64_t least_patience = 8, most_patience = 4096;
   [[nodiscard]] double part_time(std::int64_t part) const;
 
   TimePlan plan_;
@@ -47,6 +48,7 @@ private:
   std::int64_t n_halvings_ = 0; ///< whole steps are divided into 2^n_halvings parts
   std::int64_t n_parts_ = 0;    ///< of them done
   std::int64_t n_good_ = 0;     ///< since the last change
+  std::int64_t patience_ = least_patience;
 };
 
 } // namespace mullion::run
