@@ -139,9 +139,12 @@ void Recorder::recall_history()
     values.push_back(&found->numbers);
   }
   const auto& times = table.find("time")->numbers;
-  for (std::size_t s = 0; s < series_.size(); ++s) {
-    series_[s].times = times;
-    series_[s].values = *values[series_columns_[s]];
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (!clock_->is_whole(times[i])) continue;
+    for (std::size_t s = 0; s < series_.size(); ++s) {
+      series_[s].times.push_back(times[i]);
+      series_[s].values.push_back((*values[series_columns_[s]])[i]);
+    }
   }
   if (!session_->ledger() || !wet_velocity_) return;
   const auto column_of = [&](FieldAddress at, int component, Eigen::Index entity) -> const std::vector<double>* {
@@ -159,6 +162,7 @@ void Recorder::recall_history()
   const auto* energy = structure_energy_ ? column_of(*structure_energy_, 0, 0) : nullptr;
   if (work == nullptr || defect == nullptr) return;
   for (std::size_t i = 0; i < times.size(); ++i) {
+    if (!clock_->is_whole(times[i])) continue;
     InterfaceSeries::Sample sample;
     sample.time = times[i];
     for (int c = 0; c < InterfaceSeries::n_velocities; ++c)
@@ -332,12 +336,13 @@ void Recorder::write_row(const TimeStep& step)
 void Recorder::record(const TimeStep& step)
 {
   const bool is_output = is_output_due();
-  watch_interface(step);
+  const bool is_whole = clock_->is_on_grid(); // what the summary looks at has equal steps
+  if (is_whole) watch_interface(step);
   const bool is_row = history_ != nullptr && is_row_due();
   if (is_row || !series_.empty() || is_output) {
     const auto begin = Clock::now();
     if (is_row) write_row(step);
-    for (std::size_t s = 0; s < series_.size(); ++s) {
+    for (std::size_t s = 0; s < series_.size() && is_whole; ++s) {
       series_[s].times.push_back(step.end);
       series_[s].values.push_back(measure(columns_[series_columns_[s]]));
     }

@@ -69,6 +69,13 @@ void StepClock::advance()
   n_good_ = 0;
 }
 
+bool StepClock::is_whole(double time) const
+{
+  const auto origin = plan_.origin();
+  const double n = std::round((time - origin.time) / plan_.dt());
+  return n >= 0.0 && std::abs(time - (origin.time + n * plan_.dt())) <= 1e-9 * plan_.dt(); // less is round-off
+}
+
 bool StepClock::halve(std::int64_t most)
 {
   if (n_halvings_ >= most) return false;

@@ -34,6 +34,8 @@ public:
   [[nodiscard]] std::int64_t grid() const { return grid_; }
   [[nodiscard]] bool is_on_grid() const { return n_parts_ == 0; }
   [[nodiscard]] double time() const { return part_time(n_parts_); }
+  /// Is this (earlier) time the end of a whole step, as times are counted now?
+  [[nodiscard]] bool is_whole(double time) const;
 
   [[nodiscard]] io::CheckpointClock state() const;
 
