@@ -27,6 +27,23 @@ std::vector<io::CheckpointPlugin> plugins_of(const Case& the_case, plugin::Catal
   return plugins;
 }
 
+std::vector<std::string> other_plugins(const std::vector<io::CheckpointPlugin>& then,
+                                       const std::vector<io::CheckpointPlugin>& now)
+{
+  std::vector<std::string> others;
+  for (const auto& plugin : now) {
+    const auto before = std::find_if(then.begin(), then.end(),
+                                     [&](const io::CheckpointPlugin& p) { return p.instance == plugin.instance; });
+    if (before == then.end() || before->name != plugin.name) continue; // the case says so itself
+    if (before->version != plugin.version)
+      others.push_back(
+          fmt::format("{}: {} {}, was {}", plugin.instance, plugin.name, plugin.version, before->version));
+    else if (before->build != plugin.build)
+      others.push_back(fmt::format("{}: another build of {} {}", plugin.instance, plugin.name, plugin.version));
+  }
+  return others;
+}
+
 io::Checkpoint checkpoint_of(Session& session, const StepClock& clock)
 {
   auto& control = session.control();

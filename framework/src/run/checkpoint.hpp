@@ -7,12 +7,17 @@
 #include "run/session.hpp"
 #include "run/step_clock.hpp"
 
+#include <string>
 #include <vector>
 
 namespace mullion::run {
 
 /// The plug-ins of a case as a checkpoint names them: the build is a checksum of the library's file.
 [[nodiscard]] std::vector<io::CheckpointPlugin> plugins_of(const Case& the_case, plugin::Catalogue& catalogue);
+
+/// One text for each plug-in that is not the one of then: "fluid: euler_1d 0.2.0, was 0.1.0".
+[[nodiscard]] std::vector<std::string> other_plugins(const std::vector<io::CheckpointPlugin>& then,
+                                                     const std::vector<io::CheckpointPlugin>& now);
 
 /// All that the session and the clock know of the last commit. Valid until the next one.
 [[nodiscard]] io::Checkpoint checkpoint_of(Session& session, const StepClock& clock);

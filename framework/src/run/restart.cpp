@@ -5,6 +5,7 @@
 #include "config/toml_writer.hpp"
 #include "io/checkpoint_files.hpp"
 #include "log/console.hpp"
+#include "run/checkpoint.hpp"
 
 #include <mullion/sdk/error.hpp>
 
@@ -106,11 +107,21 @@ void check_physics(Restart& restart, const Case& now, const CaseOptions& options
                   restart.file.string(), then.diagnostics.empty() ? "" : then.diagnostics[0].message);
   const auto here = physics_of(now), there = physics_of(then.value);
   std::vector<std::string> differences;
+  const auto is_other_plugin = [&](const std::string& table) { // then its parameters are others, too
+    for (const char* key : {".module", ".scheme"}) {
+      const auto h = here.find(table + key), t = there.find(table + key);
+      if (h != here.end() && t != there.end() && h->second != t->second) return true;
+    }
+    return false;
+  };
   const auto compare = [&](const std::string& key) {
     const auto h = here.find(key), t = there.find(key);
+    const auto dot = key.find('.');
+    const bool names_plugin = key.ends_with(".module") || key.ends_with(".scheme");
+    if (!names_plugin && is_other_plugin(key.substr(0, dot))) return;
     const auto text = [&](auto found, const auto& map) { return found == map.end() ? "absent" : found->second; };
     if (h != here.end() && t != there.end() && h->second == t->second) return;
-    restart.changed.insert(key.substr(0, key.find('.')));
+    restart.changed.insert(key.substr(0, dot));
     if (!is_named(key, options.overrides))
       differences.push_back(fmt::format("{} is {} and was {}", key, text(h, here), text(t, there)));
   };
@@ -120,6 +131,16 @@ void check_physics(Restart& restart, const Case& now, const CaseOptions& options
   MULLION_REQUIRE(differences.empty(), Errc::config,
                   "--restart {}: it was made by another case: {}; a change that is meant is named with --set",
                   restart.file.string(), fmt::join(differences, ", "));
+}
+
+void warn_of_other_plugins(const Restart& restart, const Case& now)
+{
+  plugin::Catalogue catalogue;
+  const auto others = other_plugins(restart.checkpoint.plugins, plugins_of(now, catalogue));
+  if (!others.empty())
+    log::warning("run", "{} was made with other plug-ins ({}); the results may differ from those of a run that never "
+                        "stopped",
+                 restart.file.string(), fmt::join(others, "; "));
 }
 
 } // namespace
@@ -144,6 +165,7 @@ Begin begin_of(const RunOptions& options)
     if (begin.out.empty()) begin.out = file.has_parent_path() ? file.parent_path() : fs::path(".");
   }
   check_physics(*begin.restart, begin.the_case.value, options.case_options);
+  warn_of_other_plugins(*begin.restart, begin.the_case.value);
   return begin;
 }
 
