@@ -1,7 +1,5 @@
 #include "io/checkpoint.hpp"
 
-#include "io/hdf5_image.hpp"
-
 #include <mullion/sdk/error.hpp>
 
 #include <algorithm>
@@ -139,7 +137,7 @@ Checkpoint from_image(const ImageReader& image)
 
 } // namespace
 
-Bytes to_image(const Checkpoint& checkpoint)
+Image to_image(const Checkpoint& checkpoint)
 {
   ImageBuilder image;
   image.attribute("/", "checkpoint", format_version);
@@ -171,7 +169,7 @@ Bytes to_image(const Checkpoint& checkpoint)
 
   for (std::size_t w = 0; w < checkpoint.windows.size(); ++w)
     write_window(image, window_group(w), checkpoint.windows[w]);
-  return image.finish();
+  return image.take();
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& file)

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "io/atomic_file.hpp"
+#include "io/hdf5_image.hpp"
 #include "io/xdmf_index.hpp"
 
 #include <mullion/sdk/abi.h>
@@ -57,7 +58,7 @@ struct Checkpoint {
 
 /// The file's content, without its trailer.
 /// @throws Error Errc::io with HDF5's own text
-[[nodiscard]] Bytes to_image(const Checkpoint& checkpoint);
+[[nodiscard]] Image to_image(const Checkpoint& checkpoint);
 
 /// @throws Error Errc::io: unreadable, cut short, altered, or no checkpoint of this version of Mullion
 [[nodiscard]] Checkpoint read_checkpoint(const std::filesystem::path& file);

@@ -1,5 +1,6 @@
 #include "io/checkpoint_writer.hpp"
 
+#include "io/atomic_file.hpp"
 #include "io/checkpoint_files.hpp"
 
 #include <mullion/sdk/error.hpp>
@@ -27,7 +28,7 @@ CheckpointWriter::~CheckpointWriter()
   thread_.join();
 }
 
-void CheckpointWriter::submit(std::int64_t step, Bytes image, std::function<void()> before)
+void CheckpointWriter::submit(std::int64_t step, Image image, std::function<void()> before)
 {
   if (!thread_.joinable()) {
     // signals are the orchestrator's main thread's; a limit on file sizes shall be an error here, not a signal

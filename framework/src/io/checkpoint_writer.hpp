@@ -4,7 +4,7 @@
 // A process that dies here leaves a temporary file, never a part of a checkpoint under its name.
 #pragma once
 
-#include "io/atomic_file.hpp"
+#include "io/hdf5_image.hpp"
 
 #include <atomic>
 #include <condition_variable>
@@ -32,7 +32,7 @@ public:
   /// Hand over one checkpoint; waits while another is in flight.
   /// @param before  called in the writer's thread first: wait for what the checkpoint refers to; it may throw
   /// @throws Error Errc::process if there is no thread to be had
-  void submit(std::int64_t step, Bytes image, std::function<void()> before);
+  void submit(std::int64_t step, Image image, std::function<void()> before);
 
   /// Wait until nothing is in flight.
   void wait();
@@ -53,7 +53,7 @@ private:
   std::condition_variable changed_;
   bool is_in_flight_ = false, is_ending_ = false;
   std::int64_t step_ = 0; ///< this and what follows: the thread's while a file is in flight
-  Bytes image_;
+  Image image_;
   std::function<void()> before_;
 };
 

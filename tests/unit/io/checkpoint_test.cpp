@@ -102,7 +102,8 @@ TEST_CASE("a checkpoint reads back to the last bit")
 TEST_CASE("the bytes of a checkpoint depend on what is in it alone")
 {
   std::vector<Bytes> one, other;
-  CHECK(to_image(small_checkpoint(one)) == to_image(small_checkpoint(other)));
+  const auto a = to_image(small_checkpoint(one)), b = to_image(small_checkpoint(other));
+  CHECK(std::ranges::equal(std::span<const std::byte>(a), std::span<const std::byte>(b)));
 }
 
 TEST_CASE("a file that is altered anywhere is refused")
