@@ -1,7 +1,7 @@
-// What a checkpoint costs. For the run: building the image of the file in memory, which is all that it waits for, beside
-// one copy of the same bytes to new memory. For the writer's thread, while the run goes on: checksum, write and sync, beside
-// a plain write and sync of the same bytes. And for a restart: reading it back. One window with two slots, from 1 MB to
-// 1 GB of committed values; medians.
+// What a checkpoint costs. For the run: building the image of the file in memory, which is all that it waits for,
+// beside one copy of the same bytes to new memory. For the writer's thread, while the run goes on: checksum, write and
+// sync, beside a plain write and sync of the same bytes. And for a restart: reading it back. One window with two slots,
+// from 1 MB to 1 GB of committed values; medians.
 //
 //   build-dev/bench/checkpoint [--folder DIR] [--rounds R] [--largest MB]
 #include "io/checkpoint.hpp"

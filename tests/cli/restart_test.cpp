@@ -24,8 +24,9 @@ namespace fs = std::filesystem;
 test::CaseRun piston(const std::vector<std::string>& sets = {}, std::vector<std::string> flags = {})
 {
   test::CaseRun run{.file = MULLION_SOURCE_DIR "/configs/closed_piston.toml"};
-  run.sets = {"run.end_time=2.4377976008801763e-4", "fluid.cells=20", "structure.elements=10", "output.every=10",
-              "output.checkpoint_every=10", "output.keep_checkpoints=0"};
+  run.sets = {
+      "run.end_time=2.4377976008801763e-4", "fluid.cells=20",           "structure.elements=10", "output.every=10",
+      "output.checkpoint_every=10",         "output.keep_checkpoints=0"};
   run.sets.insert(run.sets.end(), sets.begin(), sets.end());
   flags.emplace_back("--inline");
   run.flags = std::move(flags);
@@ -192,8 +193,7 @@ TEST_CASE("a run goes on in another folder, which then holds the rest")
   const auto rest = test::read_history(run.folder / "rest/history.csv");
   const auto whole = test::read_history(run.folder / "whole/history.csv");
   CHECK(rest.at("step").front() == 30);
-  for (const auto& [column, values] : whole)
-    CHECK(std::vector(values.begin() + 30, values.end()) == rest.at(column));
+  for (const auto& [column, values] : whole) CHECK(std::vector(values.begin() + 30, values.end()) == rest.at(column));
   CHECK(test::read_file(run.folder / "rest/results/000000040.h5") ==
         test::read_file(run.folder / "whole/results/000000040.h5"));
 }

@@ -1,5 +1,5 @@
-// Checkpoints, and what they are for: a run that was killed goes on with one command and ends with the bytes of one that
-// never stopped; what fails twice ends with the last good state on disk.
+// Checkpoints, and what they are for: a run that was killed goes on with one command and ends with the bytes of one
+// that never stopped; what fails twice ends with the last good state on disk.
 #include "support/faulty_piston.hpp"
 #include "support/history.hpp"
 
@@ -149,7 +149,8 @@ TEST_CASE("a checkpoint that cannot be written is told, the run goes on, and the
   const auto result = run->wait();
 
   CHECK_MESSAGE(result.exit_code == 0, result.err);
-  CHECK(has(result.err, "the limit on file sizes (ulimit -f) is too small; the run goes on, older checkpoints are whole"));
+  CHECK(has(result.err,
+            "the limit on file sizes (ulimit -f) is too small; the run goes on, older checkpoints are whole"));
   test::check_nothing_left(folder);
 }
 
@@ -163,8 +164,9 @@ TEST_CASE("what fails twice in the same step ends the run with a post-mortem and
       test::piston({"run.on_failure=respawn", "structure.fault=segfault", "structure.at_step=30"}, {"--processes"}));
 
   test::check_failed(folder, result, 1,
-                     {"module 'structure' (faulty_structure, process ", "was killed by signal 11 (SIGSEGV), in step, "
-                                                                        "step 30, t = ",
+                     {"module 'structure' (faulty_structure, process ",
+                      "was killed by signal 11 (SIGSEGV), in step, "
+                      "step 30, t = ",
                       "the same had happened before in this step, which ends the run"});
   CHECK(has(result.err, "respawned 'structure', step 30 is done again from the last commit"));
   const auto post_mortem = test::read_file(folder / "out/post-mortem.txt");
@@ -188,8 +190,7 @@ TEST_CASE("a run that ends with a number that is none leaves its last good state
 {
   for (const char* placement : {"--inline", "--processes"}) {
     const test::RunFolder folder;
-    const auto result =
-        folder.run(test::piston({"structure.fault=not_a_number", "structure.at_step=30"}, {placement}));
+    const auto result = folder.run(test::piston({"structure.fault=not_a_number", "structure.at_step=30"}, {placement}));
 
     test::check_failed(folder, result, 1, {"structure/wet.velocity[0, 0] = nan"});
     CHECK(io::list_checkpoints(folder / "out").size() == 1);
@@ -252,12 +253,37 @@ TEST_CASE("a host that is killed while it is started anew is started once more")
   CHECK(test::difference_of_part(folder / "out", folder / "whole") == "");
 }
 
+TEST_CASE("a host that hangs past its deadline is replaced, and the bytes are those of an undisturbed run")
+{
+  const test::RunFolder folder;
+  test::run_whole(folder);
+  const auto run = folder.start(test::long_piston({"run.on_failure=respawn", "run.call_deadline=0.5"}));
+  for (int module = 0; module < 4; ++module) {
+    REQUIRE(folder.wait_for_step(test::piston_name, folder.steps_of(test::piston_name) + 10));
+    const auto host = test::find_host(folder, module);
+    ::kill(host, SIGSTOP);
+    CHECK(test::wait_until([&] {
+      const auto next = test::find_host(folder, module);
+      return next != 0 && next != host;
+    }));
+  }
+  REQUIRE(folder.wait_for_step(test::piston_name, folder.steps_of(test::piston_name) + 10));
+  run->send(SIGINT);
+  const auto result = run->wait();
+
+  CHECK_MESSAGE(result.exit_code == 0, result.err);
+  CHECK(has(result.err, "did not answer within its deadline of 0.5 s"));
+  CHECK(test::difference_of_part(folder / "out", folder / "whole") == "");
+  CHECK(test::read_record(folder / "out").at("attempts")[0].at("events").size() == 4);
+  test::check_nothing_left(folder);
+}
+
 TEST_CASE("a step that diverges is halved where the case says so, and the run comes back to its times")
 {
   // At sixteen times the usual step (Courant number 1.6) the gas holds for a few steps only.
   const std::vector<std::string> sets{"run.dt=9.751190403520706e-5", "run.end_time=1.95023808070414e-3", // 20 steps
-                                      "driver.scheme=gss", "output.every=5", "output.checkpoint_every=1",
-                                      "output.keep_checkpoints=0"};
+                                      "driver.scheme=gss",           "output.every=5",
+                                      "output.checkpoint_every=1",   "output.keep_checkpoints=0"};
   auto halved = sets;
   halved.emplace_back("run.on_divergence=halve_dt");
   const auto piston = [](const std::vector<std::string>& with, const std::vector<std::string>& flags,
@@ -274,7 +300,7 @@ TEST_CASE("a step that diverges is halved where the case says so, and the run co
   CHECK_MESSAGE(whole.exit_code == 0, whole.err);
   CHECK(has(whole.err, "is done again with dt = 4.875595201760353e-05 s"));
   const auto times = test::read_history(folder / "whole/history.csv").at("time");
-  CHECK(times.size() > 21); // a row for each half, too
+  CHECK(times.size() > 21);    // a row for each half, too
   for (int n = 0; n < 20; ++n) // and all of the plan's times, to the last bit
     CHECK(std::count(times.begin(), times.end(), n * 9.751190403520706e-5) == 1);
   CHECK(times.back() == 1.95023808070414e-3);

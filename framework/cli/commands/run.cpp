@@ -14,8 +14,7 @@ int run_run(const Arguments& arguments)
   CommandLine command{"mullion run [CASE] [options]", "Run a case, or go on with one.", {}, "case"};
   command.options.add_options()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                                 "overrule a key of the case, e.g. fluid.cells=200; may be repeated")(
-      "out", po::value<std::string>()->value_name("DIR"),
-      "results folder (default: out/<run name>)")(
+      "out", po::value<std::string>()->value_name("DIR"), "results folder (default: out/<run name>)")(
       "restart", po::value<std::string>()->value_name("FILE|latest"),
       "go on from a checkpoint: a file, or the newest good one of the results folder; without CASE: with the case that "
       "the checkpoint holds")("inline", "every module inline, whatever the case says")(

@@ -32,11 +32,11 @@ struct CheckpointWindow {
 
 /// Where the run stands, and from where its times are counted (run/step_clock.hpp).
 struct CheckpointClock {
-  std::int64_t step = 0;                                ///< steps committed so far
-  double time = 0.0, dt = 0.0;                          ///< [s] dt: of the case
-  std::int64_t grid = 0, origin = 0;                    ///< whole coupling steps done; the one that times count from
-  double grid_time = 0.0, next_time = 0.0;              ///< [s] of `grid` and of the whole step behind it
-  double origin_time = 0.0;                             ///< [s]
+  std::int64_t step = 0;                    ///< steps committed so far
+  double time = 0.0, dt = 0.0;              ///< [s] dt: of the case
+  std::int64_t grid = 0, origin = 0;        ///< whole coupling steps done; the one that times count from
+  double grid_time = 0.0, next_time = 0.0;  ///< [s] of `grid` and of the whole step behind it
+  double origin_time = 0.0;                 ///< [s]
   std::int64_t n_halvings = 0, n_parts = 0; ///< the step at hand is halved so often; parts of it that are done
   std::int64_t n_good = 0, patience = 0;    ///< good steps since the last change of size, and how many it takes
 };

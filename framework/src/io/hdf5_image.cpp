@@ -137,9 +137,9 @@ struct ImageBuilder::Memory {
     if (at != nullptr && at != self.data) return nullptr;
     const auto needed = (size + huge_page - 1) / huge_page * huge_page;
     if (needed <= self.mapped) return self.data;
-    void* const moved = self.data == nullptr ? ::mmap(nullptr, needed, PROT_READ | PROT_WRITE,
-                                                      MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)
-                                             : ::mremap(self.data, self.mapped, needed, MREMAP_MAYMOVE);
+    void* const moved = self.data == nullptr
+                            ? ::mmap(nullptr, needed, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)
+                            : ::mremap(self.data, self.mapped, needed, MREMAP_MAYMOVE);
     if (moved == MAP_FAILED) return nullptr;
     self.data = static_cast<std::byte*>(moved);
     self.mapped = needed;

@@ -145,8 +145,7 @@ OutputList XdmfIndex::list() const
   OutputList list;
   std::map<const std::string*, std::int64_t> numbers;
   for (const auto& output : outputs_) {
-    const auto [number, is_new] =
-        numbers.try_emplace(output.layout, static_cast<std::int64_t>(list.texts.size()));
+    const auto [number, is_new] = numbers.try_emplace(output.layout, static_cast<std::int64_t>(list.texts.size()));
     if (is_new) list.texts.push_back(*output.layout);
     list.steps.push_back(output.step);
     list.times.push_back(output.time);

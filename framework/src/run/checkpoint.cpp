@@ -36,8 +36,7 @@ std::vector<std::string> other_plugins(const std::vector<io::CheckpointPlugin>& 
                                      [&](const io::CheckpointPlugin& p) { return p.instance == plugin.instance; });
     if (before == then.end() || before->name != plugin.name) continue; // the case says so itself
     if (before->version != plugin.version)
-      others.push_back(
-          fmt::format("{}: {} {}, was {}", plugin.instance, plugin.name, plugin.version, before->version));
+      others.push_back(fmt::format("{}: {} {}, was {}", plugin.instance, plugin.name, plugin.version, before->version));
     else if (before->build != plugin.build)
       others.push_back(fmt::format("{}: another build of {} {}", plugin.instance, plugin.name, plugin.version));
   }

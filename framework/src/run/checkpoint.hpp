@@ -15,7 +15,7 @@ namespace mullion::run {
 /// The plug-ins of a case as a checkpoint names them: the build is a checksum of the library's file.
 [[nodiscard]] std::vector<io::CheckpointPlugin> plugins_of(const Case& the_case, plugin::Catalogue& catalogue);
 
-/// One text for each plug-in that is not the one of then: "fluid: euler_1d 0.2.0, was 0.1.0".
+/// One text for each plug-in that is not the one of then: "fluid: gas 0.2.0, was 0.1.0".
 [[nodiscard]] std::vector<std::string> other_plugins(const std::vector<io::CheckpointPlugin>& then,
                                                      const std::vector<io::CheckpointPlugin>& now);
 

@@ -17,8 +17,7 @@ std::string duration_text(double seconds)
 } // namespace
 
 Progress::Progress()
-    : begin_(Clock::now()),
-      interval_(log::is_terminal() ? std::chrono::milliseconds(100) : std::chrono::seconds(10))
+    : begin_(Clock::now()), interval_(log::is_terminal() ? std::chrono::milliseconds(100) : std::chrono::seconds(10))
 {
   next_ = begin_ + interval_;
 }

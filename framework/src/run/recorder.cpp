@@ -370,12 +370,11 @@ void Recorder::write_checkpoint()
   checkpoint.plugins = plugins_;
   if (results_ != nullptr) checkpoint.outputs = results_->outputs();
   if (history_ != nullptr) history_->flush();
-  checkpoints_.submit(clock_->step(), io::to_image(checkpoint),
-                      [history = history_.get(), results = results_.get()] {
-                        if (history != nullptr) history->sync();
-                        MULLION_REQUIRE(results == nullptr || results->wait_for_outputs(), Errc::io,
-                                        "a result file before it could not be written");
-                      });
+  checkpoints_.submit(clock_->step(), io::to_image(checkpoint), [history = history_.get(), results = results_.get()] {
+    if (history != nullptr) history->sync();
+    MULLION_REQUIRE(results == nullptr || results->wait_for_outputs(), Errc::io,
+                    "a result file before it could not be written");
+  });
   checkpoint_step_ = clock_->step();
   ++n_checkpoints_;
   checkpoint_ns_ += nanoseconds_since(begin);

@@ -1,4 +1,5 @@
-// What a run leaves behind: history.csv, the result files, checkpoints, run.json, case.toml. Reads committed levels only.
+// What a run leaves behind: history.csv, the result files, checkpoints, run.json, case.toml. Reads committed levels
+// only.
 #pragma once
 
 #include "io/checkpoint_writer.hpp"

@@ -48,10 +48,11 @@ void Recovery::recover(const Error& error, const char* then)
   std::string text = error.what();
   for (;;) { // a host may die while it is started anew
     if (!deaths_.insert(session_.last_death()).second)
-      throw Error(Errc::process, fmt::format("{}; the same had happened before in this step, which ends the run", text));
+      throw Error(Errc::process,
+                  fmt::format("{}; the same had happened before in this step, which ends the run", text));
     if (deaths_.size() > most_deaths)
-      throw Error(Errc::process, fmt::format("{}; it was death number {} in this step, which ends the run", text,
-                                             deaths_.size()));
+      throw Error(Errc::process,
+                  fmt::format("{}; it was death number {} in this step, which ends the run", text, deaths_.size()));
     std::vector<std::string> respawned;
     try {
       respawned = session_.recover();

@@ -1,6 +1,6 @@
 // A coupling step that is done until it succeeds or must fail: after the death of a host, with on_failure = "respawn",
-// everything goes back to the last commit, the host is started anew, and the step is done again. What fails twice in the
-// same way in one step would fail for ever: it ends the run.
+// everything goes back to the last commit, the host is started anew, and the step is done again. What fails twice in
+// the same way in one step would fail for ever: it ends the run.
 #pragma once
 
 #include "run/recorder.hpp"

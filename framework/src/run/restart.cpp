@@ -30,9 +30,10 @@ fs::path newest_of(const fs::path& folder)
   }
   MULLION_REQUIRE(problems.empty(), Errc::config, "--restart latest: no checkpoint in {} is sound: {}", folder.string(),
                   fmt::join(problems, "; "));
-  throw Error(Errc::config, fmt::format("--restart latest: there is no checkpoint in {}; run without --restart to begin, "
-                                        "or say with --out where the results are",
-                                        folder.string()));
+  throw Error(Errc::config,
+              fmt::format("--restart latest: there is no checkpoint in {}; run without --restart to begin, "
+                          "or say with --out where the results are",
+                          folder.string()));
 }
 
 Restart read_restart(const fs::path& file)
@@ -42,10 +43,9 @@ Restart read_restart(const fs::path& file)
   } catch (const Error& error) {
     const auto folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
     const auto good = io::newest_good_checkpoint(folder);
-    throw Error(Errc::config,
-                fmt::format("--restart: {}; {}", error.what(),
-                            good ? fmt::format("the newest good one is {}", good->path.string())
-                                 : fmt::format("there is no good one in {}", folder.string())));
+    throw Error(Errc::config, fmt::format("--restart: {}; {}", error.what(),
+                                          good ? fmt::format("the newest good one is {}", good->path.string())
+                                               : fmt::format("there is no good one in {}", folder.string())));
   }
 }
 
@@ -138,8 +138,9 @@ void warn_of_other_plugins(const Restart& restart, const Case& now)
   plugin::Catalogue catalogue;
   const auto others = other_plugins(restart.checkpoint.plugins, plugins_of(now, catalogue));
   if (!others.empty())
-    log::warning("run", "{} was made with other plug-ins ({}); the results may differ from those of a run that never "
-                        "stopped",
+    log::warning("run",
+                 "{} was made with other plug-ins ({}); the results may differ from those of a run that never "
+                 "stopped",
                  restart.file.string(), fmt::join(others, "; "));
 }
 

@@ -1,5 +1,5 @@
-// How a run begins: with a case alone, or from a checkpoint, with a case that says the same physics or with the one that
-// the checkpoint holds.
+// How a run begins: with a case alone, or from a checkpoint, with a case that says the same physics or with the one
+// that the checkpoint holds.
 #pragma once
 
 #include "io/checkpoint.hpp"

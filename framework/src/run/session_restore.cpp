@@ -16,8 +16,7 @@ using shm::Operation;
 
 namespace {
 
-template <class... T>
-void require(bool holds, const std::string& window, fmt::format_string<T...> text, T&&... values)
+template <class... T> void require(bool holds, const std::string& window, fmt::format_string<T...> text, T&&... values)
 {
   MULLION_REQUIRE(holds, Errc::config, "the checkpoint does not fit: window {} {}", window,
                   fmt::format(text, std::forward<T>(values)...));

@@ -1,4 +1,5 @@
-// One run: case or checkpoint, session, the loop over coupling steps with its audits, results, and the end, good or bad.
+// One run: case or checkpoint, session, the loop over coupling steps with its audits, results, and the end, good or
+// bad.
 #include <mullion/app/simulation.hpp>
 
 #include "io/atomic_file.hpp"

@@ -144,9 +144,9 @@ TEST_CASE("a sound file with nonsense in it is refused")
 TEST_CASE("checkpoints are listed by step, newest first, and nothing else is taken for one")
 {
   const Scratch folder;
-  for (const char* name : {"checkpoint-000000002.h5", "checkpoint-000000010.h5", "checkpoint-1000000000.h5",
-                           "checkpoint-7.h5", "checkpoint-00000000x.h5", "checkpoint-000000003.h5.tmp-4711",
-                           "checkpoint-.h5", "results.h5"})
+  for (const char* name :
+       {"checkpoint-000000002.h5", "checkpoint-000000010.h5", "checkpoint-1000000000.h5", "checkpoint-7.h5",
+        "checkpoint-00000000x.h5", "checkpoint-000000003.h5.tmp-4711", "checkpoint-.h5", "results.h5"})
     std::ofstream(folder / name) << "x";
 
   CHECK(steps_in(folder.path()) == std::vector<std::int64_t>{1000000000, 10, 2});
@@ -179,8 +179,7 @@ TEST_CASE("the writer keeps the newest ones, in the order in which they came")
       CHECK(problem == "");
       reported.push_back(step);
     });
-    for (const std::int64_t step : {5, 10, 15, 20})
-      writer.submit(step, to_image(small_checkpoint(storage, step)), {});
+    for (const std::int64_t step : {5, 10, 15, 20}) writer.submit(step, to_image(small_checkpoint(storage, step)), {});
     writer.wait();
     CHECK(writer.last_step() == 20);
   }

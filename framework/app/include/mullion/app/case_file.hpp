@@ -52,7 +52,7 @@ struct Case {
   double call_deadline = 300.0, start_deadline = 600.0; ///< [s]; 0: none
   std::string on_failure = "stop";
   std::string on_divergence = "stop";
-  std::int64_t max_halvings = 6; ///< of a step, with on_divergence = "halve_dt"
+  std::int64_t max_halvings = 6;   ///< of a step, with on_divergence = "halve_dt"
   std::vector<ModuleCase> modules; ///< in the order fluid, structure, mesh_motion, transfer, then by name
   std::vector<InterfaceCase> interfaces;
   double reference_pressure = 0.0;
@@ -63,7 +63,7 @@ struct Case {
   std::vector<ConnectionCase> connections;
   std::int64_t output_every = 0; ///< steps between result files; 0: none
   bool has_history = true;
-  std::int64_t history_every = 1; ///< steps between its rows
+  std::int64_t history_every = 1;    ///< steps between its rows
   std::int64_t checkpoint_every = 0; ///< steps between checkpoints; 0: none but that of a run that ends early
   std::int64_t keep_checkpoints = 2; ///< so many stay; 0: all
   std::vector<Expectation> expectations;
