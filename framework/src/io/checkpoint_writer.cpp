@@ -28,7 +28,7 @@ CheckpointWriter::~CheckpointWriter()
   thread_.join();
 }
 
-void CheckpointWriter::submit(std::int64_t step, Image image, std::function<void()> before)
+void CheckpointWriter::submit(std::int64_t step, Image image, std::function<void()> before, Report done)
 {
   if (!thread_.joinable()) {
     // signals are the orchestrator's main thread's; a limit on file sizes shall be an error here, not a signal
@@ -49,6 +49,7 @@ void CheckpointWriter::submit(std::int64_t step, Image image, std::function<void
     step_ = step;
     image_ = std::move(image);
     before_ = std::move(before);
+    done_ = std::move(done);
     is_in_flight_ = true;
   }
   changed_.notify_all();
@@ -70,9 +71,11 @@ void CheckpointWriter::run_thread()
     const auto problem = write();
     if (problem.empty()) last_step_ = step_;
     report_(step_, problem);
+    if (done_) done_(step_, problem);
     lock.lock();
     image_ = {};
     before_ = {};
+    done_ = {};
     is_in_flight_ = false;
     changed_.notify_all();
   }

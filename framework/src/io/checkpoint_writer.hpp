@@ -31,8 +31,9 @@ public:
 
   /// Hand over one checkpoint; waits while another is in flight.
   /// @param before  called in the writer's thread first: wait for what the checkpoint refers to; it may throw
+  /// @param done    called like the report, for this one
   /// @throws Error Errc::process if there is no thread to be had
-  void submit(std::int64_t step, Image image, std::function<void()> before);
+  void submit(std::int64_t step, Image image, std::function<void()> before, Report done = {});
 
   /// Wait until nothing is in flight.
   void wait();
@@ -55,6 +56,7 @@ private:
   std::int64_t step_ = 0; ///< this and what follows: the thread's while a file is in flight
   Image image_;
   std::function<void()> before_;
+  Report done_;
 };
 
 } // namespace mullion::io

@@ -1,5 +1,8 @@
 #include "run/checkpoint.hpp"
 
+#include "io/atomic_file.hpp"
+#include "plugin/library.hpp"
+
 #include <mullion/coupling/build_id.hpp>
 #include <mullion/sdk/error.hpp>
 
@@ -9,21 +12,27 @@
 namespace mullion::run {
 namespace {
 
-std::string checksum_of(const std::string& library)
+std::string checksum_of(const std::string& library, std::map<std::string, std::string>& known)
 {
-  const auto content = io::read_text(library);
-  return fmt::format("{:016x}", io::crc64(std::as_bytes(std::span(content))));
+  auto& checksum = known[library];
+  if (checksum.empty()) {
+    const auto content = io::read_text(library);
+    checksum = fmt::format("{:016x}", io::crc64(std::as_bytes(std::span(content))));
+  }
+  return checksum;
 }
 
 } // namespace
 
-std::vector<io::CheckpointPlugin> plugins_of(const Case& the_case, plugin::Catalogue& catalogue)
+std::vector<io::CheckpointPlugin> plugins_of(const Case& the_case, std::map<std::string, std::string>& checksums)
 {
   std::vector<io::CheckpointPlugin> plugins;
   for (const auto& module : the_case.modules)
-    plugins.push_back({module.instance, module.kind, module.plugin, module.version, checksum_of(module.path)});
-  const auto& driver = catalogue.open(the_case.scheme);
-  plugins.push_back({"driver", "driver", the_case.scheme, driver.header().version, checksum_of(driver.path())});
+    plugins.push_back(
+        {module.instance, module.kind, module.plugin, module.version, checksum_of(module.path, checksums)});
+  const plugin::Library driver(the_case.scheme_path);
+  plugins.push_back(
+      {"driver", "driver", the_case.scheme, driver.header().version, checksum_of(the_case.scheme_path, checksums)});
   return plugins;
 }
 

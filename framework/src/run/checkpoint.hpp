@@ -3,17 +3,19 @@
 #pragma once
 
 #include "io/checkpoint.hpp"
-#include "plugin/catalogue.hpp"
 #include "run/session.hpp"
 #include "run/step_clock.hpp"
 
+#include <map>
 #include <string>
 #include <vector>
 
 namespace mullion::run {
 
 /// The plug-ins of a case as a checkpoint names them: the build is a checksum of the library's file.
-[[nodiscard]] std::vector<io::CheckpointPlugin> plugins_of(const Case& the_case, plugin::Catalogue& catalogue);
+/// @param checksums  by path, those known so far
+[[nodiscard]] std::vector<io::CheckpointPlugin> plugins_of(const Case& the_case,
+                                                           std::map<std::string, std::string>& checksums);
 
 /// One text for each plug-in that is not the one of then: "fluid: gas 0.2.0, was 0.1.0".
 [[nodiscard]] std::vector<std::string> other_plugins(const std::vector<io::CheckpointPlugin>& then,

@@ -16,13 +16,14 @@ std::string duration_text(double seconds)
 
 } // namespace
 
-Progress::Progress()
-    : begin_(Clock::now()), interval_(log::is_terminal() ? std::chrono::milliseconds(100) : std::chrono::seconds(10))
+Progress::Progress(const std::atomic<std::int64_t>& n_steps)
+    : n_steps_(n_steps), begin_(Clock::now()),
+      interval_(log::is_terminal() ? std::chrono::milliseconds(100) : std::chrono::seconds(10))
 {
   next_ = begin_ + interval_;
 }
 
-void Progress::show(const TimeStep& done, std::int64_t n_steps)
+void Progress::show(const TimeStep& done)
 {
   if (first_step_ < 0) first_step_ = done.index - 1;
   if (done.index < next_look_) return; // a step may take a microsecond: don't ask the clock each time
@@ -32,6 +33,7 @@ void Progress::show(const TimeStep& done, std::int64_t n_steps)
   next_look_ = done.index + static_cast<std::int64_t>(rate * 0.01);
   if (now < next_) return;
   next_ = now + interval_;
+  const auto n_steps = n_steps_.load();
   const double share = static_cast<double>(done.index) / static_cast<double>(n_steps);
   const double left = static_cast<double>(n_steps - done.index) / rate;
   const auto text = fmt::format("step {}/{}, t = {:.6g} s, {:.4g} steps/s, {} left", done.index, n_steps, done.end,

@@ -6,15 +6,19 @@
 
 #include <mullion/sdk/window.hpp>
 
+#include <atomic>
+#include <cstdint>
+
 namespace mullion::run {
 
 class Progress {
 public:
-  Progress();
-  /// @param n_steps  how many there will be, as far as is known now
-  void show(const TimeStep& done, std::int64_t n_steps);
+  /// @param n_steps  planned; it may change on the way
+  explicit Progress(const std::atomic<std::int64_t>& n_steps);
+  void show(const TimeStep& done);
 
 private:
+  const std::atomic<std::int64_t>& n_steps_;
   std::int64_t first_step_ = -1;
   Clock::time_point begin_, next_;
   std::int64_t next_look_ = 0;

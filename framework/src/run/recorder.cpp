@@ -351,31 +351,32 @@ void Recorder::record(const TimeStep& step)
   }
   const bool is_due = case_.checkpoint_every > 0 && step.index > 0 && clock_->is_on_grid() &&
                       clock_->grid() % case_.checkpoint_every == 0;
-  if (!is_due && !is_checkpoint_wanted_.load(std::memory_order_relaxed)) return;
-  is_checkpoint_wanted_ = false;
-  write_checkpoint();
+  if (is_due) write_checkpoint();
 }
 
 // ---- checkpoints -------------------------------------------------------------------------------------------------
 
-void Recorder::write_checkpoint()
+void Recorder::write_checkpoint(CheckpointDone done)
 {
-  if (checkpoint_step_ == clock_->step()) return;
+  const auto step = clock_->step();
+  if (checkpoint_step_ == step) { // by the case's own wish, or the run went on from it
+    if (!done) return;
+    checkpoints_.wait();
+    const bool is_there = checkpoints_.last_step() == step || (restart_ != nullptr && n_checkpoints_ == 0);
+    return done(step, is_there ? "" : "it could not be written; the log says why");
+  }
   const auto begin = Clock::now();
   auto checkpoint = checkpoint_of(*session_, *clock_);
-  if (plugins_.empty()) {
-    plugin::Catalogue catalogue;
-    plugins_ = plugins_of(case_, catalogue);
-  }
-  checkpoint.plugins = plugins_;
+  checkpoint.plugins = plugins_of(case_, checksums_);
   if (results_ != nullptr) checkpoint.outputs = results_->outputs();
   if (history_ != nullptr) history_->flush();
-  checkpoints_.submit(clock_->step(), io::to_image(checkpoint), [history = history_.get(), results = results_.get()] {
+  const auto wait_for_files = [history = history_.get(), results = results_.get()] {
     if (history != nullptr) history->sync();
     MULLION_REQUIRE(results == nullptr || results->wait_for_outputs(), Errc::io,
                     "a result file before it could not be written");
-  });
-  checkpoint_step_ = clock_->step();
+  };
+  checkpoints_.submit(step, io::to_image(checkpoint), wait_for_files, std::move(done));
+  checkpoint_step_ = step;
   ++n_checkpoints_;
   checkpoint_ns_ += nanoseconds_since(begin);
 }
@@ -399,9 +400,9 @@ void Recorder::save_last_commit() noexcept
   }
 }
 
-void Recorder::note(const std::string& what, const std::string& instance, const std::string& detail)
+void Recorder::note(std::int64_t step, const std::string& what, const std::string& instance, const std::string& detail)
 {
-  record_.attempts.back().events.push_back({control_.step + 1, what, instance, detail});
+  record_.attempts.back().events.push_back({step, what, instance, detail});
 }
 
 // ---- result files ------------------------------------------------------------------------------------------------

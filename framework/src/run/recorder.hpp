@@ -12,8 +12,9 @@
 #include "run/step_clock.hpp"
 #include "run/timings.hpp"
 
-#include <atomic>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -40,15 +41,17 @@ public:
   /// not every step has one, rows come at whole steps of the plan.
   void record(const TimeStep& step);
 
-  /// From any thread: have a checkpoint written at the next step boundary, besides those that the case asks for.
-  void request_checkpoint() { is_checkpoint_wanted_ = true; }
-  /// The step of the newest checkpoint that this attempt put on the disk; -1: none yet. From any thread.
-  [[nodiscard]] std::int64_t last_checkpoint() const { return checkpoints_.last_step(); }
+  /// Between two steps: write a checkpoint of the last commit, besides those that the case asks for.
+  /// @param done  called when it is on disk, from the writer's thread, or here if it is there already, with the step
+  /// and
+  ///              "", or with why it was not written
+  using CheckpointDone = io::CheckpointWriter::Report;
+  void write_checkpoint(CheckpointDone done = {});
   /// The last commit shall be on disk: the run ends before its end. Never throws: a failure is logged.
   void save_last_commit() noexcept;
 
-  /// What happened to a module, for run.json.
-  void note(const std::string& what, const std::string& instance, const std::string& detail);
+  /// What happened to a module in a step, for run.json.
+  void note(std::int64_t step, const std::string& what, const std::string& instance, const std::string& detail);
 
   /// Close all files, complete run.json. Never throws: a failure is logged.
   void finish(const std::string& outcome, const std::string& error) noexcept;
@@ -90,9 +93,8 @@ private:
   void write_row(const TimeStep& step);
   [[nodiscard]] bool is_row_due() const;
   [[nodiscard]] bool is_output_due() const;
-  void go_on();            ///< in a restart: fill in what the files lack of the checkpoint's step
-  void recall_history();   ///< in a restart: what the summary looks at, from the rows that were kept
-  void write_checkpoint(); ///< @throws Error
+  void go_on();          ///< in a restart: fill in what the files lack of the checkpoint's step
+  void recall_history(); ///< in a restart: what the summary looks at, from the rows that were kept
   void collect_timings();
 
   const Case& case_;
@@ -114,10 +116,9 @@ private:
   std::optional<InterfaceSummary> interface_summary_;
   std::unique_ptr<io::HistoryWriter> history_;
   std::unique_ptr<io::ResultsWriter> results_;
-  std::vector<io::CheckpointPlugin> plugins_; ///< looked up at the first checkpoint
-  std::atomic<bool> is_checkpoint_wanted_{false};
-  std::int64_t checkpoint_step_ = -1; ///< of the last one that was handed over
-  io::CheckpointWriter checkpoints_;  ///< after what its thread waits for
+  std::map<std::string, std::string> checksums_; ///< of plug-in libraries
+  std::int64_t checkpoint_step_ = -1;            ///< of the last one that was handed over
+  io::CheckpointWriter checkpoints_;             ///< after what its thread waits for
   Clock::time_point begun_;
   std::int64_t output_ns_ = 0; ///< spent in record(), checkpoints aside
   std::int64_t n_checkpoints_ = 0, checkpoint_ns_ = 0;

@@ -26,7 +26,7 @@ void Recovery::attempt(const TimeStep& step)
     try {
       return attempt_once(step);
     } catch (const Error& error) {
-      recover(error, then.c_str());
+      recover(error, step.index, then);
     }
   }
 }
@@ -37,12 +37,12 @@ void Recovery::between_steps(const std::function<void()>& action)
     try {
       return action();
     } catch (const Error& error) {
-      recover(error, "it is asked again");
+      recover(error, session_.control().step, "it is asked again");
     }
   }
 }
 
-void Recovery::recover(const Error& error, const char* then)
+void Recovery::recover(const Error& error, std::int64_t step, const std::string& then)
 {
   if (error.code() != Errc::process || session_.the_case().on_failure != "respawn") throw error;
   std::string text = error.what();
@@ -62,7 +62,7 @@ void Recovery::recover(const Error& error, const char* then)
       continue;
     }
     if (respawned.empty()) throw error;
-    for (const auto& instance : respawned) recorder_.note("respawn", instance, text);
+    for (const auto& instance : respawned) recorder_.note(step, "respawn", instance, text);
     log::warning("run", "{}; respawned '{}', {}", text, fmt::join(respawned, "', '"), then);
     return;
   }

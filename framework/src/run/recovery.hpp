@@ -27,7 +27,7 @@ public:
 private:
   void attempt_once(const TimeStep& step);
   /// @throws Error the one given, if that must not be mended
-  void recover(const Error& error, const char* then);
+  void recover(const Error& error, std::int64_t step, const std::string& then);
 
   static constexpr std::size_t most_deaths = 20; ///< in one step, each of another kind
   Session& session_;

@@ -135,8 +135,8 @@ void check_physics(Restart& restart, const Case& now, const CaseOptions& options
 
 void warn_of_other_plugins(const Restart& restart, const Case& now)
 {
-  plugin::Catalogue catalogue;
-  const auto others = other_plugins(restart.checkpoint.plugins, plugins_of(now, catalogue));
+  std::map<std::string, std::string> checksums;
+  const auto others = other_plugins(restart.checkpoint.plugins, plugins_of(now, checksums));
   if (!others.empty())
     log::warning("run",
                  "{} was made with other plug-ins ({}); the results may differ from those of a run that never "

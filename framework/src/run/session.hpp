@@ -49,6 +49,8 @@ public:
   /// @param changed  modules with other parameters than then: their windows must have the same shape all the same
   /// @throws Error Errc::config: the checkpoint's windows are not those of this case and its plug-ins
   void start_from(const io::Checkpoint& from, const std::set<std::string>& changed);
+  /// A start-up failed: kill what there is of hosts and forget all windows, so that it can be done again.
+  void forget_start();
   /// Begin a coupling step from the last commit: forget what was written, arm driver/state.
   void begin_attempt();
   void run_driver(const TimeStep& step);

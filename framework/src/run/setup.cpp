@@ -66,6 +66,23 @@ void Session::start_fresh()
   is_running_ = true;
 }
 
+void Session::forget_start()
+{
+  driver_.reset();
+  forget_checks();
+  for (auto& module : modules_)
+    if (module.host != nullptr) supervisor_.kill(*module.host);
+  modules_ = std::vector<Module>(case_.modules.size());
+  n_in_flight_ = 0;
+  windows_.forget_all();
+  objects_.clear();
+  wiring_.reset();
+  state_window_ = shm::no_window;
+  ledger_.reset();
+  write_order_.clear();
+  shm::forget_windows_and_modules(control_);
+}
+
 void Session::renew()
 {
   driver_.reset();

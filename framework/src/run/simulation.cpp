@@ -18,7 +18,6 @@
 #include <mullion/sdk/error.hpp>
 
 #include <cstdio>
-#include <functional>
 #include <optional>
 #include <unistd.h>
 
@@ -51,7 +50,7 @@ std::string run_steps(const RunOptions& options, run::Session& session, process:
                       run::StepClock& clock, run::Recorder& recorder)
 {
   const auto& the_case = session.the_case();
-  run::Progress progress;
+  run::Progress progress(session.control().n_steps);
   run::Audit audit;
   run::Recovery recovery(session, recorder);
   std::string stopped_by;
@@ -77,16 +76,16 @@ std::string run_steps(const RunOptions& options, run::Session& session, process:
       const bool may_halve = error.code() == Errc::numeric && the_case.on_divergence == "halve_dt";
       if (!may_halve || !clock.halve(the_case.max_halvings)) throw;
       session.quiesce();
-      session.control().n_steps = clock.n_steps();
-      recorder.note("halve_dt", "", error.what());
+      recorder.note(step.index, "halve_dt", "", error.what());
       log::warning("run", "{}; step {} is done again with dt = {} s", error.what(), step.index, clock.next().dt);
       continue;
     }
     session.commit(step);
     clock.advance();
+    session.control().n_steps = clock.n_steps();
     recovery.forget();
     recorder.record(step);
-    progress.show(step, clock.n_steps());
+    progress.show(step);
     if (supervisor.is_stopping() && !clock.is_at_end()) {
       stopped_by = supervisor.stop_reason();
       break;
@@ -98,19 +97,18 @@ std::string run_steps(const RunOptions& options, run::Session& session, process:
 
 /// Bring the session to life. A module that dies meanwhile gets a second chance, from the very beginning, where
 /// deaths are mended at all.
-void start(std::optional<run::Session>& session, const std::function<void()>& make, const run::Begin& begin)
+void start(run::Session& session, const run::Restart* restart)
 {
   const auto bring_to_life = [&] {
-    if (begin.restart) session->start_from(begin.restart->checkpoint, begin.restart->changed);
-    else session->start_fresh();
+    if (restart != nullptr) session.start_from(restart->checkpoint, restart->changed);
+    else session.start_fresh();
   };
   try {
-    make();
     bring_to_life();
   } catch (const Error& error) {
-    if (error.code() != Errc::process || begin.the_case.value.on_failure != "respawn") throw;
+    if (error.code() != Errc::process || session.the_case().on_failure != "respawn") throw;
     log::warning("run", "{}; the start-up is done again from the beginning", error.what());
-    make();
+    session.forget_start();
     bring_to_life();
   }
 }
@@ -131,29 +129,24 @@ int orchestrate(const RunOptions& options, shm::Control& control, int control_fd
   process::Supervisor supervisor(control, control_fd);
   plugin::Catalogue catalogue;
   run::Recorder recorder(c, begin.out, control, restart);
+  run::Session session(c, catalogue, control, supervisor, {options.replay, options.has_deadlines});
   std::optional<run::StepClock> clock;
-  std::optional<run::Session> session;
-  const auto make_session = [&] {
-    session.reset();
-    shm::forget_windows_and_modules(control);
-    session.emplace(c, catalogue, control, supervisor, run::SessionOptions{options.replay, options.has_deadlines});
-  };
   try {
     supervisor.serve(socket, [&](const std::string& line) { return answer(control, supervisor, line); });
-    start(session, make_session, begin);
-    const bool needs_constant_step = session->wiring().needs_constant_step;
+    start(session, restart);
+    const bool needs_constant_step = session.wiring().needs_constant_step;
     if (restart != nullptr) clock.emplace(c, needs_constant_step, restart->checkpoint.clock);
     else clock.emplace(run::TimePlan(c, needs_constant_step));
     control.n_steps = clock->n_steps();
     control.state = shm::RunState::running;
-    recorder.begin(*session, *clock);
+    recorder.begin(session, *clock);
     if (restart != nullptr)
       log::info("run", "goes on from {}: step {}, t = {} s", restart->file.string(), clock->step(), clock->time());
     log::info("run", "{}: {} steps of {} s, results in {}", c.name, clock->n_steps(), c.dt, begin.out.string());
-    const auto stopped_by = run_steps(options, *session, supervisor, *clock, recorder);
+    const auto stopped_by = run_steps(options, session, supervisor, *clock, recorder);
     log::show_progress("");
     if (!stopped_by.empty() || c.checkpoint_every > 0) recorder.save_last_commit();
-    session->shut_down();
+    session.shut_down();
     supervisor.unserve();
     recorder.finish(stopped_by.empty() ? "completed" : "stopped", stopped_by);
     if (options.has_summary) std::fputs(run::summary(recorder, stopped_by).c_str(), stdout);
@@ -163,7 +156,7 @@ int orchestrate(const RunOptions& options, shm::Control& control, int control_fd
     supervisor.unserve();
     recorder.save_last_commit();
     recorder.finish("failed", error.what());
-    if (const auto text = session ? session->post_mortem() : ""; !text.empty())
+    if (const auto text = session.post_mortem(); !text.empty())
       io::write_atomically(begin.out / "post-mortem.txt", text);
     throw;
   }

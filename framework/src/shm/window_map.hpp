@@ -24,6 +24,12 @@ public:
   /// An inline module's windows become writable in the orchestrator.
   void allow(std::uint32_t module) { inline_modules_ |= 1u << module; }
   void forbid(std::uint32_t module);
+  /// No mapping and no right is left.
+  void forget_all()
+  {
+    inline_modules_ = 0;
+    entries_ = {};
+  }
 
   [[nodiscard]] const Control& control() const { return control_; }
 

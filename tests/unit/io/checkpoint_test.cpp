@@ -179,7 +179,9 @@ TEST_CASE("the writer keeps the newest ones, in the order in which they came")
       CHECK(problem == "");
       reported.push_back(step);
     });
-    for (const std::int64_t step : {5, 10, 15, 20}) writer.submit(step, to_image(small_checkpoint(storage, step)), {});
+    for (const std::int64_t step : {5, 10, 15, 20})
+      writer.submit(step, to_image(small_checkpoint(storage, step)), {},
+                    [&](std::int64_t s, const std::string&) { CHECK(s == reported.back()); });
     writer.wait();
     CHECK(writer.last_step() == 20);
   }
