@@ -1,5 +1,6 @@
 // Every installed module and driver, in at least one case, gives the same bytes however it is run: inline, in
-// processes, with every step done twice, by processes that know nothing but their windows, and twice at the same time.
+// processes, with every step done twice, by processes that know nothing but their windows, twice at the same time, and
+// from a checkpoint on.
 //
 // A new plug-in needs a line in `cases`; this test says so.
 #include "support/run_case.hpp"
@@ -7,7 +8,10 @@
 #include <mullion/app/catalogue.hpp>
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
+#include <filesystem>
+#include <random>
 #include <set>
 #include <string>
 #include <vector>
@@ -221,5 +225,39 @@ TEST_CASE("every plug-in gives the same bytes inline, in processes, replayed, am
 
     CHECK(folder.is_deserted_within(std::chrono::seconds(1)));
     CHECK(folder.new_shared_memory().empty());
+  }
+}
+
+TEST_CASE("every plug-in goes on from a checkpoint of any step to the same bytes, under another placement too")
+{
+  const unsigned seed = std::random_device{}();
+  CAPTURE(seed);
+  std::mt19937 random(seed);
+  for (const auto& c : cases) {
+    CAPTURE(&c - cases.data());
+    const test::RunFolder folder;
+    auto whole = to_run(c, {"--inline"}, "reference");
+    for (const char* set : {"output.checkpoint_every=1", "output.keep_checkpoints=0"}) whole.sets.emplace_back(set);
+    REQUIRE(folder.run(whole).exit_code == 0);
+
+    for (const char* placement : {"--inline", "--processes"}) {
+      const int step = std::uniform_int_distribution(1, 39)(random);
+      CAPTURE(step);
+      CAPTURE(placement);
+      std::filesystem::remove_all(folder / "out");
+      std::filesystem::copy(folder / "reference", folder / "out", std::filesystem::copy_options::recursive);
+      const auto file = fmt::format("out/checkpoint-{:09}.h5", step);
+      auto rest = whole;
+      rest.out = "out";
+      rest.flags = {placement, "--restart", file};
+      const auto result = folder.run(rest);
+
+      CHECK_MESSAGE(result.exit_code == 0, result.err);
+      CHECK(test::difference(folder / "out", folder / "reference") == "");
+      const auto attempts = test::read_record(folder / "out").at("attempts");
+      REQUIRE(attempts.size() == 2);
+      CHECK(attempts[1].at("restarted_from") == file);
+      CHECK(attempts[1].at("first_step") == step);
+    }
   }
 }

@@ -53,7 +53,8 @@ std::map<std::string, std::string> result_files(const fs::path& results)
   std::error_code ignored;
   for (const auto& entry : fs::recursive_directory_iterator(results, ignored)) {
     const auto name = fs::relative(entry.path(), results).string();
-    const bool is_about_the_run = name == "case.toml" || name == "run.json" || name == "post-mortem.txt";
+    const bool is_about_the_run =
+        name == "case.toml" || name == "run.json" || name == "post-mortem.txt" || name.starts_with("checkpoint-");
     const bool is_unfinished = has(name, ".tmp-"); // the name of a file that is being written; a killed run leaves one
     if (entry.is_regular_file() && !is_about_the_run && !is_unfinished) files[name] = read_file(entry.path());
   }

@@ -1,4 +1,4 @@
-// `mullion run CASE`: composes the options and leaves the rest to the library.
+// `mullion run`: composes the options and leaves the rest to the library.
 #include "commands/arguments.hpp"
 
 #include <mullion/app/simulation.hpp>
@@ -11,11 +11,13 @@ namespace po = boost::program_options;
 
 int run_run(const Arguments& arguments)
 {
-  CommandLine command{"mullion run CASE [options]", "Run a case.", {}, "case"};
+  CommandLine command{"mullion run [CASE] [options]", "Run a case, or go on with one.", {}, "case"};
   command.options.add_options()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
                                 "overrule a key of the case, e.g. fluid.cells=200; may be repeated")(
-      "out", po::value<std::string>()->value_name("DIR"),
-      "results folder (default: out/<run name>)")("inline", "every module inline, whatever the case says")(
+      "out", po::value<std::string>()->value_name("DIR"), "results folder (default: out/<run name>)")(
+      "restart", po::value<std::string>()->value_name("FILE|latest"),
+      "go on from a checkpoint: a file, or the newest good one of the results folder; without CASE: with the case that "
+      "the checkpoint holds")("inline", "every module inline, whatever the case says")(
       "processes", "every module in a process of its own")("replay", "do every step twice and compare the bytes")(
       "amnesia", po::value<int>()->value_name("K"),
       "do every K-th step again with fresh processes and a new driver, and compare the bytes")(
@@ -24,12 +26,14 @@ int run_run(const Arguments& arguments)
   const auto given = parse_arguments(command, arguments);
   if (!given) return success;
   const auto& values = *given;
-  if (values.count("case") == 0) throw UsageError("no case given; expected " + command.usage);
-
   RunOptions options;
-  options.case_file = values["case"].as<std::vector<std::string>>().front();
+  if (values.count("restart") != 0) options.restart = values["restart"].as<std::string>();
+  if (values.count("case") != 0) options.case_file = values["case"].as<std::vector<std::string>>().front();
+  else if (options.restart.empty()) throw UsageError("no case given; expected " + command.usage);
   if (values.count("set") != 0) options.case_options.overrides = values["set"].as<std::vector<std::string>>();
   if (values.count("out") != 0) options.out = values["out"].as<std::string>();
+  if (options.restart == "latest" && options.case_file.empty() && options.out.empty())
+    throw UsageError("--restart latest looks in the results folder; give it with --out, or the case");
   if (values.count("log-level") != 0) options.log_level = values["log-level"].as<std::string>();
   options.case_options.all_inline = values.count("inline") != 0;
   options.case_options.all_processes = values.count("processes") != 0;

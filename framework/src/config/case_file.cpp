@@ -25,13 +25,19 @@ namespace {
 constexpr std::uintmax_t max_case_bytes = 16u << 20; ///< a larger file is no case somebody wrote
 
 struct RunOptions {
-  std::string name, on_failure = "stop";
+  std::string name, on_failure = "stop", on_divergence = "stop";
+  std::int64_t max_halvings = 6;
   double start_time = 0.0, end_time = 0.0, dt = 0.0, call_deadline = 300.0, start_deadline = 600.0;
   static constexpr auto table()
   {
     return std::tuple{required_parameter("name", &RunOptions::name, "", "name of the run"),
                       parameter("on_failure", &RunOptions::on_failure, "",
                                 "what follows the death of a module's process", one_of("stop", "respawn")),
+                      parameter("on_divergence", &RunOptions::on_divergence, "",
+                                "what follows a step in which values left their legal range",
+                                one_of("stop", "halve_dt")),
+                      parameter("max_halvings", &RunOptions::max_halvings, "1",
+                                "halve_dt: how often a step is halved at most", between(1.0, 30.0)),
                       parameter("start_time", &RunOptions::start_time, "s", "begin of the run"),
                       required_parameter("end_time", &RunOptions::end_time, "s", "end of the run"),
                       required_parameter("dt", &RunOptions::dt, "s", "coupling step", above(0.0)),
@@ -46,13 +52,18 @@ struct OutputOptions {
   std::int64_t every = 0;
   bool history = true;
   std::int64_t history_every = 1;
+  std::int64_t checkpoint_every = 0, keep_checkpoints = 2;
   static constexpr auto table()
   {
     return std::tuple{
         parameter("every", &OutputOptions::every, "1", "steps between two result files, 0: none", at_least(0.0)),
         parameter("history", &OutputOptions::history, "", "write history.csv"),
         parameter("history_every", &OutputOptions::history_every, "1", "steps from one row of history.csv to the next",
-                  at_least(1))};
+                  at_least(1)),
+        parameter("checkpoint_every", &OutputOptions::checkpoint_every, "1", "steps between two checkpoints, 0: none",
+                  at_least(0.0)),
+        parameter("keep_checkpoints", &OutputOptions::keep_checkpoints, "1",
+                  "so many checkpoints stay, the newest ones, 0: all", at_least(0.0))};
   }
 };
 
@@ -139,6 +150,8 @@ bool read_run(CaseReader& reader)
   value.call_deadline = run.call_deadline;
   value.start_deadline = run.start_deadline;
   value.on_failure = run.on_failure;
+  value.on_divergence = run.on_divergence;
+  value.max_halvings = run.max_halvings;
   const Table& table = *node->table();
   if (is_given(given, "name") && !is_run_name(run.name)) {
     const Node& name = table.find("name")->value;
@@ -175,6 +188,8 @@ void read_output(CaseReader& reader)
   reader.value.output_every = output.every;
   reader.value.has_history = output.history;
   reader.value.history_every = output.history_every;
+  reader.value.checkpoint_every = output.checkpoint_every;
+  reader.value.keep_checkpoints = output.keep_checkpoints;
 }
 
 void read_expectations(CaseReader& reader)
@@ -256,16 +271,23 @@ namespace mullion {
 
 CaseResult read_case(const std::string& file, const CaseOptions& options)
 {
+  std::string text;
+  if (const auto problem = config::read_file(file, text); !problem.empty()) {
+    CaseResult result;
+    result.value.file = file;
+    result.diagnostics.push_back({file, problem});
+    return result;
+  }
+  return read_case_text(text, file, options);
+}
+
+CaseResult read_case_text(const std::string& text, const std::string& file, const CaseOptions& options)
+{
   using namespace config;
   CaseResult result;
   result.value.file = file;
   if (options.all_inline && options.all_processes) {
     result.diagnostics.push_back({"--inline --processes", "the two flags contradict each other; give one"});
-    return result;
-  }
-  std::string text;
-  if (const auto problem = read_file(file, text); !problem.empty()) {
-    result.diagnostics.push_back({file, problem});
     return result;
   }
   Diagnostics diagnostics;

@@ -113,6 +113,11 @@ void check_scheme(CaseReader& reader, bool are_times_sound)
   for (const auto& connection : wiring.connections)
     value.connections.push_back({connection.receiver, connection.source, policy_name(connection.policy)});
   if (wiring.needs_constant_step && are_times_sound) check_constant_step(reader);
+  if (wiring.needs_constant_step && value.on_divergence == "halve_dt")
+    reader.diagnostics.add(reader.table("run")->table()->find("on_divergence")->value.place,
+                           fmt::format("[run] on_divergence = \"halve_dt\": driver {} cannot take steps of varying "
+                                       "size; choose \"stop\", or another scheme",
+                                       value.scheme));
 }
 
 } // namespace mullion::config

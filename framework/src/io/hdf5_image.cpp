@@ -4,7 +4,10 @@
 
 #include <hdf5.h>
 
+#include <sys/mman.h>
+
 #include <algorithm>
+#include <cstring>
 #include <numeric>
 
 namespace mullion::io {
@@ -13,6 +16,7 @@ namespace {
 static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>);
 
 constexpr std::size_t core_increment = std::size_t{1} << 20; // growth of an image in memory [bytes]
+constexpr std::size_t huge_page = std::size_t{2} << 20;      // [bytes]
 
 /// HDF5 prints its error stack to standard error unless told not to; ours becomes the text of an Error.
 void silence()
@@ -101,11 +105,69 @@ void Hdf5Handle::reset() noexcept
   id_ = -1;
 }
 
+Image& Image::operator=(Image&& other) noexcept
+{
+  std::swap(data_, other.data_);
+  std::swap(size_, other.size_);
+  std::swap(mapped_, other.mapped_);
+  return *this;
+}
+
+Image::~Image()
+{
+  if (data_ != nullptr) ::munmap(data_, mapped_);
+}
+
+// ---- the library's memory ---------------------------------------------------------------------------------
+
+/// The core driver asks these functions for its one block of memory. Ours is a mapping, which grows without a copy, in
+/// large pages where the machine has them (touching small ones for the first time costs more than filling them), and
+/// which outlives the file.
+struct ImageBuilder::Memory {
+  std::byte* data = nullptr;
+  std::size_t mapped = 0;
+
+  ~Memory()
+  {
+    if (data != nullptr) ::munmap(data, mapped);
+  }
+  static void* resize(void* at, std::size_t size, H5FD_file_image_op_t, void* memory)
+  {
+    auto& self = *static_cast<Memory*>(memory);
+    if (at != nullptr && at != self.data) return nullptr;
+    const auto needed = (size + huge_page - 1) / huge_page * huge_page;
+    if (needed <= self.mapped) return self.data;
+    void* const moved = self.data == nullptr
+                            ? ::mmap(nullptr, needed, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)
+                            : ::mremap(self.data, self.mapped, needed, MREMAP_MAYMOVE);
+    if (moved == MAP_FAILED) return nullptr;
+    self.data = static_cast<std::byte*>(moved);
+    self.mapped = needed;
+    if (needed > huge_page) ::madvise(self.data, self.mapped, MADV_HUGEPAGE); // a hint: it may be refused
+    return self.data;
+  }
+  static void* allocate(std::size_t size, H5FD_file_image_op_t op, void* memory)
+  {
+    return resize(nullptr, size, op, memory);
+  }
+  static void* copy(void* to, const void* from, std::size_t size, H5FD_file_image_op_t, void*)
+  {
+    return std::memcpy(to, from, size);
+  }
+  static herr_t release(void*, H5FD_file_image_op_t, void*) { return 0; } // with the object
+  static void* share(void* memory) { return memory; }
+  static herr_t unshare(void*) { return 0; }
+};
+
 // ---- building ---------------------------------------------------------------------------------------------
 
 ImageBuilder::ImageBuilder()
 {
   const auto access = core_access();
+  memory_ = std::make_shared<Memory>();
+  H5FD_file_image_callbacks_t callbacks{&Memory::allocate, &Memory::copy,    &Memory::resize, &Memory::release,
+                                        &Memory::share,    &Memory::unshare, memory_.get()};
+  check(H5Pset_file_image_callbacks(access.get(), &callbacks), "take memory for", "a file in memory");
   const auto creation = timeless(H5P_FILE_CREATE); // the root group's
   plain_dataset_ = timeless(H5P_DATASET_CREATE);
   check(H5Pset_fill_time(plain_dataset_.get(), H5D_FILL_TIME_NEVER), "turn off", "fill values");
@@ -212,16 +274,23 @@ void ImageBuilder::external_link(const std::string& path, const std::string& fil
         path);
 }
 
-Bytes ImageBuilder::finish()
+Image ImageBuilder::take()
 {
   check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "flush", "a file in memory");
   const auto size = H5Fget_file_image(file_.get(), nullptr, 0);
   if (size < 0) fail("measure", "a file in memory");
-  Bytes image(static_cast<std::size_t>(size));
-  if (H5Fget_file_image(file_.get(), image.data(), image.size()) != size) fail("copy", "a file in memory");
   file_.reset();
   groups_.clear();
-  return image;
+  auto& memory = *memory_;
+  MULLION_ASSERT(static_cast<std::size_t>(size) <= memory.mapped, "an image of {} bytes in {}", size, memory.mapped);
+  return {std::exchange(memory.data, nullptr), static_cast<std::size_t>(size), std::exchange(memory.mapped, 0)};
+}
+
+Bytes ImageBuilder::finish()
+{
+  const auto image = take();
+  const std::span<const std::byte> bytes = image;
+  return {bytes.begin(), bytes.end()};
 }
 
 // ---- reading ----------------------------------------------------------------------------------------------

@@ -6,11 +6,14 @@
 
 #include "io/atomic_file.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <set>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace mullion::io {
@@ -30,6 +33,23 @@ public:
 private:
   std::int64_t id_ = -1;
   Close close_ = nullptr;
+};
+
+/// The bytes of a finished file in memory of their own, handed over as the library left them: a copy of a large image
+/// would cost as much as building it. Unmapped with the object.
+class Image {
+public:
+  Image() = default;
+  Image(std::byte* data, std::size_t size, std::size_t mapped) : data_(data), size_(size), mapped_(mapped) {}
+  Image(Image&& other) noexcept { *this = std::move(other); }
+  Image& operator=(Image&& other) noexcept;
+  ~Image();
+  operator std::span<const std::byte>() const { return {data_, size_}; } // NOLINT: it is one
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+private:
+  std::byte* data_ = nullptr;
+  std::size_t size_ = 0, mapped_ = 0;
 };
 
 using Extents = std::vector<std::int64_t>; ///< slowest first, as HDF5 and C count
@@ -57,6 +77,8 @@ public:
 
   /// The finished file; the builder is empty afterwards.
   [[nodiscard]] Bytes finish();
+  /// The same without a copy.
+  [[nodiscard]] Image take();
 
 private:
   void make_parents(const std::string& path);
@@ -64,6 +86,8 @@ private:
              const Extents& extents);
   void write_attribute(const std::string& path, const std::string& name, std::int64_t type, const void* value);
 
+  struct Memory; ///< where the library builds the file
+  std::shared_ptr<Memory> memory_;
   Hdf5Handle file_, plain_dataset_, plain_group_; ///< the creation properties without time stamps
   std::set<std::string> groups_;
 };

@@ -27,8 +27,8 @@ constexpr std::size_t flush_size = std::size_t{1} << 20; // [bytes] whatever the
   throw Error(Errc::io, fmt::format("cannot {} {}: {}", what, path.string(), std::generic_category().message(code)));
 }
 
-/// Bytes of `text` up to and with the last whole line whose step is at most `step`.
-std::size_t end_of_step(std::string_view text, std::string_view header, std::int64_t step)
+/// Bytes of `text` up to and with the last whole line whose step is at most `step`; that line's step goes to `last`.
+std::size_t end_of_step(std::string_view text, std::string_view header, std::int64_t step, std::int64_t& last)
 {
   std::size_t end = header.size();
   while (true) {
@@ -38,6 +38,7 @@ std::size_t end_of_step(std::string_view text, std::string_view header, std::int
     const auto parsed = std::from_chars(text.data() + end, text.data() + newline, found);
     if (parsed.ec != std::errc{} || *parsed.ptr != ',' || found > step) return end;
     end = newline + 1;
+    last = found;
   }
 }
 
@@ -60,7 +61,7 @@ HistoryWriter::HistoryWriter(std::filesystem::path path, const std::vector<std::
                     "with --out",
                     path_.string(), text.substr(0, text.find('\n')),
                     std::string_view(header).substr(0, header.size() - 1));
-    if (!text.empty()) kept = end_of_step(text, header, *continue_after);
+    if (!text.empty()) kept = end_of_step(text, header, *continue_after, last_kept_);
   }
 
   fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
@@ -110,6 +111,12 @@ void HistoryWriter::flush()
   }
   buffer_.clear();
   last_flush_ = Clock::now();
+}
+
+void HistoryWriter::sync() const
+{
+  // EINVAL: not a regular file (a pipe, a terminal)
+  if (::fsync(fd_) != 0 && errno != EINVAL) fail("sync", path_, errno);
 }
 
 void HistoryWriter::close()

@@ -33,6 +33,10 @@ public:
   /// @throws Error Errc::io, naming the file
   void row(std::int64_t step, double time, std::span<const double> values);
   void flush();
+  /// From any thread, not beside close(): what was flushed is on the disk, whatever happens to the machine.
+  void sync() const;
+  /// The step of the last line that was kept from an earlier attempt; -1: none was.
+  [[nodiscard]] std::int64_t last_kept() const { return last_kept_; }
   /// Write what is buffered and close the file. Idempotent.
   void close();
 
@@ -42,6 +46,7 @@ private:
   const std::filesystem::path path_;
   const std::size_t n_columns_;
   int fd_ = -1;
+  std::int64_t last_kept_ = -1;
   fmt::memory_buffer buffer_;
   Clock::time_point last_flush_{};
 };

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -173,15 +174,33 @@ ResultsWriter::~ResultsWriter()
 
 fs::path ResultsWriter::output_path(std::int64_t step) const { return results_ / (output_name(step) + ".h5"); }
 
-std::size_t ResultsWriter::keep_outputs_before(std::int64_t step)
+void ResultsWriter::go_on_from(const OutputList& outputs)
 {
   MULLION_ASSERT(index_.outputs().empty(), "outputs of earlier attempts come before those of this one");
+  index_.restore(outputs);
   std::error_code error;
-  const auto path = out_ / "results.xdmf";
-  if (!fs::exists(path, error)) return 0;
-  index_.read(read_text(path), step);
   index_.keep_if([&](const XdmfIndex::Output& output) { return fs::exists(output_path(output.step), error); });
-  return index_.outputs().size();
+  is_index_due_ = true;
+  std::set<std::string> kept;
+  for (const auto& output : index_.outputs()) kept.insert(output_name(output.step));
+  for (const auto& entry : fs::directory_iterator(results_, error)) { // what the earlier attempt wrote after that
+    const auto name = entry.path().stem().string();
+    const bool is_output = name.find_first_not_of("0123456789") == std::string::npos;
+    if (is_output && !kept.contains(name)) fs::remove(entry.path(), error);
+  }
+}
+
+bool ResultsWriter::has_output(std::int64_t step) const
+{
+  const auto& outputs = index_.outputs();
+  return std::any_of(outputs.begin(), outputs.end(), [&](const auto& output) { return output.step == step; });
+}
+
+bool ResultsWriter::wait_for_outputs()
+{
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return files_.empty(); });
+  return error_ == nullptr;
 }
 
 void ResultsWriter::begin(const std::vector<WindowData>& windows)

@@ -31,11 +31,12 @@ public:
   ResultsWriter(const ResultsWriter&) = delete;
   ResultsWriter& operator=(const ResultsWriter&) = delete;
 
-  /// After a restart in the same folder: the index goes on from the outputs of earlier attempts before `step`
-  /// whose files are still there. From the checkpoint of step K: keep_outputs_before(K + 1), as K's output is not
-  /// written again. Call before the first write().
-  /// @return how many those are; 0 if there is no index, or not one of ours
-  std::size_t keep_outputs_before(std::int64_t step);
+  /// After a restart in the same folder: the index goes on from the outputs that the checkpoint lists, as far as their
+  /// files are there; files of other outputs are removed. Call before begin().
+  void go_on_from(const OutputList& outputs);
+  /// The outputs so far, for a checkpoint.
+  [[nodiscard]] OutputList outputs() const { return index_.list(); }
+  [[nodiscard]] bool has_output(std::int64_t step) const;
 
   /// Write mesh.h5, here and now (so that a folder that can't be written fails at the start): reference coordinates,
   /// connectivity, and the fields of `windows` as those that never change. Called once.
@@ -50,6 +51,9 @@ public:
   /// visible: then a restart from there finds all earlier outputs in the index.
   /// @throws Error Errc::io: an output or an index could not be written
   void flush();
+
+  /// From any thread: wait until the outputs that were handed over so far are on disk. @return are they?
+  [[nodiscard]] bool wait_for_outputs();
 
   /// flush() and end the thread.
   /// @throws Error Errc::io, once

@@ -3,7 +3,6 @@
 #include <mullion/sdk/error.hpp>
 
 #include <array>
-#include <charconv>
 #include <iterator>
 #include <utility>
 
@@ -97,28 +96,6 @@ std::string attribute(std::string_view file, const std::string& group, const Fie
                      type, center, data_item(file, group + "/" + field.name, extents, field.f64 != nullptr));
 }
 
-/// `text` without `start`, if it starts with that.
-bool skip(std::string_view& text, std::string_view start)
-{
-  if (!text.starts_with(start)) return false;
-  text.remove_prefix(start.size());
-  return true;
-}
-
-template <class Number> bool take_number(std::string_view& text, Number& number)
-{
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (parsed.ec != std::errc{}) return false;
-  text.remove_prefix(static_cast<std::size_t>(parsed.ptr - text.data()));
-  return true;
-}
-
-void replace_all(std::string& text, std::string_view from, std::string_view to)
-{
-  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-}
-
 } // namespace
 
 std::string pane_group(const WindowData& window, const PaneData& pane)
@@ -163,28 +140,31 @@ const std::string* XdmfIndex::intern(std::string layout)
   return &layouts_.try_emplace(std::move(layout), 0).first->first;
 }
 
-void XdmfIndex::read(std::string_view text, std::int64_t step)
+OutputList XdmfIndex::list() const
 {
-  if (!skip(text, head)) return;
-  std::vector<Output> found;
-  while (text != tail) {
-    const auto end = text.find(output_end);
-    if (end == std::string_view::npos) return;
-    std::string layout(text.substr(0, end + output_end.size()));
-    text.remove_prefix(layout.size());
+  OutputList list;
+  std::map<const std::string*, std::int64_t> numbers;
+  for (const auto& output : outputs_) {
+    const auto [number, is_new] = numbers.try_emplace(output.layout, static_cast<std::int64_t>(list.texts.size()));
+    if (is_new) list.texts.push_back(*output.layout);
+    list.steps.push_back(output.step);
+    list.times.push_back(output.time);
+    list.layouts.push_back(number->second);
+  }
+  return list;
+}
 
-    std::string_view rest = layout;
-    Output output{};
-    const bool is_ours = skip(rest, "<Grid Name=\"") && take_number(rest, output.step) &&
-                         skip(rest, "\" GridType=\"Collection\" CollectionType=\"Spatial\">\n<Time Value=\"") &&
-                         take_number(rest, output.time) && skip(rest, "\"/>\n");
-    if (!is_ours) return;
-    if (output.step >= step) continue;
-    const auto file = fmt::format("results/{}.h5:", output_name(output.step));
-    std::string body(rest);
-    replace_all(body, file, std::string("results/") + step_mark + ".h5:");
-    output.layout = intern(std::string(output_begin) + body);
-    found.push_back(output);
+void XdmfIndex::restore(const OutputList& list)
+{
+  MULLION_REQUIRE(list.steps.size() == list.times.size() && list.steps.size() == list.layouts.size(), Errc::io,
+                  "a list of outputs has {} steps, {} times and {} layouts", list.steps.size(), list.times.size(),
+                  list.layouts.size());
+  std::vector<Output> found;
+  for (std::size_t i = 0; i < list.steps.size(); ++i) {
+    const auto layout = list.layouts[i];
+    MULLION_REQUIRE(0 <= layout && static_cast<std::size_t>(layout) < list.texts.size(), Errc::io,
+                    "the output of step {} has layout {} of {}", list.steps[i], layout, list.texts.size());
+    found.push_back({list.steps[i], list.times[i], intern(list.texts[static_cast<std::size_t>(layout)])});
   }
   outputs_ = std::move(found);
 }

@@ -1,7 +1,7 @@
 // The text of results.xdmf, which tells ParaView how the datasets of mesh.h5 and of each output's file form grids.
 // An output's grids are described once per arrangement of fields (a layout, with the step and the time left
 // open) and every output of the same arrangement shares it, so that the index stays small in memory and its
-// text depends on the list of outputs alone. read() takes the list back out of a text that text() made.
+// text depends on the list of outputs alone.
 #pragma once
 
 #include "io/snapshot.hpp"
@@ -21,6 +21,15 @@ namespace mullion::io {
 /// The name of an output: its step with at least nine digits, so that names sort as steps do.
 [[nodiscard]] std::string output_name(std::int64_t step);
 
+/// The outputs of an index as plain data, for a checkpoint: as many steps, times and layouts, and the few texts that
+/// these number.
+struct OutputList {
+  std::vector<std::int64_t> steps;
+  std::vector<double> times;
+  std::vector<std::int64_t> layouts;
+  std::vector<std::string> texts;
+};
+
 class XdmfIndex {
 public:
   /// The meshes and the fixed fields of all later outputs.
@@ -30,8 +39,9 @@ public:
   void add(std::int64_t step, double time, const std::vector<WindowData>& windows);
   void remove_last() { outputs_.pop_back(); }
 
-  /// Take over the outputs before `step` of the index `text`. Anything unexpected in it: nothing is taken.
-  void read(std::string_view text, std::int64_t step);
+  [[nodiscard]] OutputList list() const;
+  /// @throws Error Errc::io: the lists differ in length, or number a layout that is not there
+  void restore(const OutputList& list);
 
   struct Output {
     std::int64_t step;

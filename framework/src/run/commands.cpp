@@ -124,7 +124,7 @@ std::string Commands::timings() const
 
 // ---- the main thread ---------------------------------------------------------------------------------------------
 
-void Commands::apply_pending(TimePlan& plan)
+void Commands::apply_pending(StepClock& clock)
 {
   while (!session_.has_trial()) {
     Pending command;
@@ -138,7 +138,7 @@ void Commands::apply_pending(TimePlan& plan)
       pending_.pop_front();
     }
     try {
-      apply(command, plan);
+      apply(command, clock);
     } catch (const Error& error) {
       log::warning("run", "{} refused: {}", command.what, error.what());
       command.reply(reply_refused(error.code(), error.what()));
@@ -148,12 +148,14 @@ void Commands::apply_pending(TimePlan& plan)
   }
 }
 
-void Commands::apply(const Pending& command, TimePlan& plan)
+void Commands::apply(const Pending& command, StepClock& clock)
 {
   if (command.what == "swap") return apply_swap(command);
-  if (command.what == "set") return apply_set(command, plan);
-  MULLION_REQUIRE(on_checkpoint != nullptr, Errc::config, "this run writes no checkpoints");
-  on_checkpoint(command.reply);
+  if (command.what == "set") return apply_set(command, clock);
+  recorder_.write_checkpoint([reply = command.reply](std::int64_t step, const std::string& problem) {
+    reply(problem.empty() ? reply_done(fmt::format("checkpoint of step {}", step), step)
+                          : reply_refused(Errc::io, problem));
+  });
 }
 
 std::uint32_t Commands::find_target(const std::string& name) const
@@ -220,7 +222,7 @@ void Commands::apply_swap(const Pending& command)
   session_.try_module(m, std::move(candidate), library.module());
 }
 
-void Commands::apply_set(const Pending& command, TimePlan& plan)
+void Commands::apply_set(const Pending& command, StepClock& clock)
 {
   const std::vector<std::string> sets = Json::parse(command.arguments).at("sets");
   MULLION_REQUIRE(!sets.empty(), Errc::config, "nothing to set");
@@ -239,8 +241,8 @@ void Commands::apply_set(const Pending& command, TimePlan& plan)
   }
   if (table == "run" || table == "output") {
     MULLION_REQUIRE(assignments.size() == 1, Errc::config, "one key of [{}] at a time", table);
-    set_run(table + "." + assignments[0].first, assignments[0].second, plan);
-    recorder_.note("set", table, changes);
+    set_run(table + "." + assignments[0].first, assignments[0].second, clock);
+    recorder_.note(session_.control().step, "set", table, changes);
     log::info("run", "set {}: {}", table, changes);
     return command.reply(reply_done(fmt::format("{}: {}", table, changes), session_.control().step.load()));
   }
@@ -263,7 +265,7 @@ void Commands::apply_set(const Pending& command, TimePlan& plan)
   session_.try_module(m, std::move(candidate), library.module());
 }
 
-void Commands::set_run(const std::string& key, const std::string& value, TimePlan& plan)
+void Commands::set_run(const std::string& key, const std::string& value, StepClock& clock)
 {
   const auto node = config::parse_value(value, {});
   const auto* real = std::get_if<double>(&node.value);
@@ -277,10 +279,10 @@ void Commands::set_run(const std::string& key, const std::string& value, TimePla
     MULLION_REQUIRE(std::isfinite(changed.end_time) && changed.end_time > now, Errc::config,
                     "{} = {} s is not behind the run, which is at t = {} s; 'mullion stop' ends it here", key, value,
                     now);
-    plan = TimePlan(changed, session_.wiring().needs_constant_step);
+    clock = StepClock(changed, session_.wiring().needs_constant_step, clock.state());
     case_.end_time = changed.end_time;
     case_.text = config::edit_key(case_.text, "run", {"end_time", changed.end_time, true});
-    session_.control().n_steps = plan.n_steps();
+    session_.control().n_steps = clock.n_steps();
   } else if (key == "output.every") {
     MULLION_REQUIRE(integer != nullptr && *integer >= 1, Errc::config, "{} = {}: expected a number of steps >= 1", key,
                     value);
@@ -306,7 +308,7 @@ void Commands::keep(const TimeStep& step)
     case_.text = config::edit_plugin(case_.text, instance, "module", module.plugin, module.parameters);
   }
   session_.keep();
-  recorder_.note(what, instance, detail);
+  recorder_.note(step.index, what, instance, detail);
   log::info("run", "{} {}: {}; at work from step {} on", what, instance, detail, step.index);
   reply(reply_done(fmt::format("{}: {}", instance, detail), step.index));
   on_trial_ = {};
@@ -319,7 +321,7 @@ bool Commands::take_back(const TimeStep& step, const std::string& failure)
   session_.take_back();
   const auto text = fmt::format("{} {} ({}) taken back, the one before it does step {} again: {}", what, instance,
                                 detail, step.index, failure);
-  recorder_.note(what + " taken back", instance, fmt::format("{}: {}", detail, failure));
+  recorder_.note(step.index, what + " taken back", instance, fmt::format("{}: {}", detail, failure));
   log::warning("run", "{}", text);
   reply(reply_refused(Errc::process, text));
   return true;

@@ -11,7 +11,7 @@
 #include "process/supervisor.hpp"
 #include "run/recorder.hpp"
 #include "run/session.hpp"
-#include "run/time_plan.hpp"
+#include "run/step_clock.hpp"
 
 #include <mullion/app/case_file.hpp>
 #include <mullion/sdk/error.hpp>
@@ -37,18 +37,14 @@ public:
   {
   }
 
-  /// Who writes checkpoints: called between two steps by the main thread; replies (reply_done, from any thread) when
-  /// the file is on disk. The case as it stands is the one given above.
-  std::function<void(process::Reply)> on_checkpoint;
-
   // ---- the supervisor's thread ----
   void answer(const std::string& line, const process::Reply& reply);
 
   // ---- the main thread ----
-  /// Between two steps: do what is asked for. The plan changes with run.end_time.
-  void at_boundary(TimePlan& plan)
+  /// Between two steps: do what is asked for. The clock changes with run.end_time.
+  void at_boundary(StepClock& clock)
   {
-    if (has_pending_.load(std::memory_order_relaxed)) apply_pending(plan);
+    if (has_pending_.load(std::memory_order_relaxed)) apply_pending(clock);
   }
   /// The step failed. @return was there a candidate on trial, which is taken back: then the step can be done again
   bool take_back(const TimeStep& step, const std::string& failure);
@@ -73,11 +69,11 @@ private:
     process::Reply reply;
   };
 
-  void apply_pending(TimePlan& plan);
-  void apply(const Pending& command, TimePlan& plan);
+  void apply_pending(StepClock& clock);
+  void apply(const Pending& command, StepClock& clock);
   void apply_swap(const Pending& command);
-  void apply_set(const Pending& command, TimePlan& plan);
-  void set_run(const std::string& key, const std::string& value, TimePlan& plan);
+  void apply_set(const Pending& command, StepClock& clock);
+  void set_run(const std::string& key, const std::string& value, StepClock& clock);
   void keep(const TimeStep& step);
   [[nodiscard]] std::string status() const;
   [[nodiscard]] std::string timings() const;

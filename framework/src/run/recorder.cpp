@@ -1,7 +1,10 @@
 #include "run/recorder.hpp"
 
 #include "io/atomic_file.hpp"
+#include "io/checkpoint_files.hpp"
 #include "log/console.hpp"
+#include "report/csv_table.hpp"
+#include "run/checkpoint.hpp"
 
 #include <mullion/coupling/build_id.hpp>
 #include <mullion/sdk/error.hpp>
@@ -29,27 +32,50 @@ void remove_old_results(const std::filesystem::path& out)
 
 } // namespace
 
-Recorder::Recorder(const Case& the_case, std::filesystem::path out, shm::Control& control)
-    : case_(the_case), out_(std::move(out)), control_(control), begun_(Clock::now())
+Recorder::Recorder(const Case& the_case, std::filesystem::path out, shm::Control& control, const Restart* restart)
+    : case_(the_case), out_(std::move(out)), control_(control), restart_(restart),
+      checkpoints_(out_, case_.keep_checkpoints,
+                   [](std::int64_t step, const std::string& problem) {
+                     if (problem.empty()) log::debug("run", "checkpoint of step {} is on disk", step);
+                     else
+                       log::warning("run", "no checkpoint of step {}: {}; the run goes on, older checkpoints are whole",
+                                    step, problem);
+                   }),
+      begun_(Clock::now())
 {
   io::make_folder(out_);
-  remove_old_results(out_);
+  const auto record_path = out_ / "run.json";
+  if (restart_ == nullptr) {
+    remove_old_results(out_);
+  } else {
+    io::remove_stale_temporaries(out_);
+    if (auto before = io::read_run_record(record_path)) record_ = std::move(*before);
+    for (auto& attempt : record_.attempts)
+      if (attempt.outcome == "running") attempt.outcome = "died"; // and its guard with it
+  }
   io::write_atomically(out_ / "case.toml", case_.text);
   record_.name = case_.name;
+  record_.outcome = "running";
+  record_.columns.clear();
   auto& attempt = record_.attempts.emplace_back();
   attempt.versions = {{"mullion", MULLION_VERSION}, {"build", MULLION_BUILD_ID}};
   attempt.start = io::utc_now();
   attempt.driver = case_.scheme;
   for (const auto& module : case_.modules)
     attempt.modules.push_back({module.instance, module.kind, module.plugin, module.version, module.is_process});
-  const auto record_file = std::filesystem::absolute(out_ / "run.json").string();
+  if (restart_ != nullptr) {
+    attempt.restarted_from = restart_->file.string();
+    attempt.first_step = restart_->checkpoint.clock.step;
+  }
+  const auto record_file = std::filesystem::absolute(record_path).string();
   io::write_run_record(record_file, record_);
   shm::copy_text(control_.outcome_file, sizeof control_.outcome_file, record_file, "path of run.json");
 }
 
-void Recorder::begin(Session& session)
+void Recorder::begin(Session& session, const StepClock& clock)
 {
   session_ = &session;
+  clock_ = &clock;
   choose_columns();
   for (const auto& expectation : case_.expectations) {
     const auto found = std::find_if(columns_.begin(), columns_.end(),
@@ -63,21 +89,88 @@ void Recorder::begin(Session& session)
     series_.push_back({expectation.quantity, {}, {}});
     series_columns_.push_back(static_cast<std::size_t>(found - columns_.begin()));
   }
+  // The checkpoints of another future, or of another run, would be taken for this one's.
+  io::remove_checkpoints_after(out_, restart_ != nullptr ? clock.step() : -1);
   if (case_.has_history) {
     std::vector<std::string> names;
     for (const auto& column : columns_) names.push_back(column.name);
-    history_ = std::make_unique<io::HistoryWriter>(out_ / "history.csv", names);
+    const auto kept = restart_ != nullptr ? std::optional(clock.step()) : std::nullopt;
+    history_ = std::make_unique<io::HistoryWriter>(out_ / "history.csv", names, kept);
     record_.attempts.back().files.emplace_back("history.csv");
   }
   if (case_.output_every > 0) {
     results_ = std::make_unique<io::ResultsWriter>(out_, case_.name);
-    results_->begin(snapshot());
+    if (restart_ != nullptr) results_->go_on_from(restart_->checkpoint.outputs);
+    results_->begin(snapshot(shm::Storage::fixed));
     for (const char* file : {"results.xdmf", "results.h5", "results/"})
       record_.attempts.back().files.emplace_back(file);
   }
-  record({0, case_.start_time, case_.start_time, case_.dt, 0});
+  if (restart_ == nullptr) record({0, case_.start_time, case_.start_time, case_.dt, 0});
+  else go_on();
+  has_begun_ = true;
   begun_ = Clock::now(); // wall time per step: without the start-up
   output_ns_ = 0;
+}
+
+void Recorder::go_on()
+{
+  checkpoint_step_ = clock_->step(); // it is there
+  const TimeStep now{clock_->step(), clock_->time(), clock_->time(), case_.dt, 0};
+  const auto kept = history_ != nullptr ? history_->last_kept() : -1;
+  recall_history();
+  if (history_ != nullptr && is_row_due() && kept < now.index) {
+    if (0 <= kept && kept + case_.history_every < now.index)
+      log::warning("run", "history.csv has no rows between step {} and step {}", kept, now.index);
+    write_row(now);
+  }
+  if (results_ != nullptr && is_output_due() && !results_->has_output(now.index))
+    results_->write(now.index, now.end, snapshot(shm::Storage::level));
+}
+
+void Recorder::recall_history()
+{
+  if (history_ == nullptr || history_->last_kept() < 0 || case_.history_every != 1) return;
+  const auto table = report::read_csv(out_ / "history.csv", report::LastLine::whole);
+  std::vector<const std::vector<double>*> values; // of the columns
+  for (const auto& column : columns_) {
+    const auto* found = table.find(column.name);
+    MULLION_REQUIRE(found != nullptr && !found->is_text(), Errc::io, "{}: its column {} is gone or holds texts",
+                    (out_ / "history.csv").string(), column.name);
+    values.push_back(&found->numbers);
+  }
+  const auto& times = table.find("time")->numbers;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (!clock_->is_whole(times[i])) continue;
+    for (std::size_t s = 0; s < series_.size(); ++s) {
+      series_[s].times.push_back(times[i]);
+      series_[s].values.push_back((*values[series_columns_[s]])[i]);
+    }
+  }
+  if (!session_->ledger() || !wet_velocity_) return;
+  const auto column_of = [&](FieldAddress at, int component, Eigen::Index entity) -> const std::vector<double>* {
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+      if (columns_[c].at.window == at.window && columns_[c].at.field == at.field &&
+          columns_[c].component == component && columns_[c].entity == entity &&
+          columns_[c].statistic != Statistic::largest)
+        return values[c];
+    return nullptr;
+  };
+  const std::vector<double>* velocity[InterfaceSeries::n_velocities];
+  for (int c = 0; c < InterfaceSeries::n_velocities; ++c) velocity[c] = column_of(*wet_velocity_, c, 0);
+  const auto* work = column_of(session_->ledger()->state, 0, 1);
+  const auto* defect = column_of(session_->ledger()->state, 0, 2);
+  const auto* energy = structure_energy_ ? column_of(*structure_energy_, 0, 0) : nullptr;
+  if (work == nullptr || defect == nullptr) return;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (!clock_->is_whole(times[i])) continue;
+    InterfaceSeries::Sample sample;
+    sample.time = times[i];
+    for (int c = 0; c < InterfaceSeries::n_velocities; ++c)
+      if (velocity[c] != nullptr) sample.velocity[c] = (*velocity[c])[i];
+    sample.defect = (*defect)[i];
+    if (energy != nullptr) sample.structure_energy = (*energy)[i];
+    add_sample(sample, (*work)[i]);
+  }
 }
 
 // ---- history -----------------------------------------------------------------------------------------------------
@@ -175,9 +268,7 @@ void Recorder::watch_interface(const TimeStep& step)
   }
   sample.defect = ledger(0, 2);
   if (structure_energy_) sample.structure_energy = session_->read(*structure_energy_, 1)(0, 0);
-  interface_.add(sample);
-  work_structure_ = ledger(0, 1);
-  energy_scale_ = std::max(energy_scale_, sample.structure_energy + std::abs(work_structure_));
+  add_sample(sample, ledger(0, 1));
 
   // Looked at seldom enough to cost nothing: after 2000, 4000, 8000, … steps.
   const bool is_due =
@@ -191,6 +282,13 @@ void Recorder::watch_interface(const TimeStep& step)
         step.index, made->frequency, made->growth, made->explained);
     has_warned_ = true;
   }
+}
+
+void Recorder::add_sample(const InterfaceSeries::Sample& sample, double work_structure)
+{
+  interface_.add(sample);
+  work_structure_ = work_structure;
+  energy_scale_ = std::max(energy_scale_, sample.structure_energy + std::abs(work_structure_));
 }
 
 void Recorder::summarise_interface()
@@ -228,28 +326,101 @@ double Recorder::measure(const Column& column) const
   return std::sqrt(squares / n);
 }
 
+bool Recorder::is_row_due() const
+{
+  return case_.history_every == 1 || (clock_->is_on_grid() && clock_->grid() % case_.history_every == 0);
+}
+
+bool Recorder::is_output_due() const
+{
+  return case_.output_every > 0 && clock_->is_on_grid() && clock_->grid() % case_.output_every == 0;
+}
+
+void Recorder::write_row(const TimeStep& step)
+{
+  for (std::size_t c = 0; c < columns_.size(); ++c) row_[c] = measure(columns_[c]);
+  history_->row(step.index, step.end, row_);
+}
+
 void Recorder::record(const TimeStep& step)
 {
-  const bool is_output = results_ != nullptr && step.index % case_.output_every == 0;
-  watch_interface(step);
-  const bool is_row = history_ != nullptr && step.index % case_.history_every == 0;
-  if (!is_row && series_.empty() && !is_output) return;
+  const bool is_output = is_output_due();
+  const bool is_whole = clock_->is_on_grid(); // what the summary looks at has equal steps
+  if (is_whole) watch_interface(step);
+  const bool is_row = history_ != nullptr && is_row_due();
+  if (is_row || !series_.empty() || is_output) {
+    const auto begin = Clock::now();
+    if (is_row) write_row(step);
+    for (std::size_t s = 0; s < series_.size() && is_whole; ++s) {
+      series_[s].times.push_back(step.end);
+      series_[s].values.push_back(measure(columns_[series_columns_[s]]));
+    }
+    if (is_output) results_->write(step.index, step.end, snapshot(shm::Storage::level));
+    output_ns_ += nanoseconds_since(begin);
+  }
+  const bool is_due = case_.checkpoint_every > 0 && step.index > 0 && clock_->is_on_grid() &&
+                      clock_->grid() % case_.checkpoint_every == 0;
+  if (is_due) write_checkpoint();
+}
+
+// ---- checkpoints -------------------------------------------------------------------------------------------------
+
+void Recorder::write_checkpoint(CheckpointDone done)
+{
+  const auto step = clock_->step();
+  if (checkpoint_step_ == step) { // by the case's own wish, or the run went on from it
+    if (!done) return;
+    checkpoints_.wait();
+    const bool is_there = checkpoints_.last_step() == step || (restart_ != nullptr && n_checkpoints_ == 0);
+    return done(step, is_there ? "" : "it could not be written; the log says why");
+  }
   const auto begin = Clock::now();
-  if (is_row) {
-    for (std::size_t c = 0; c < columns_.size(); ++c) row_[c] = measure(columns_[c]);
-    history_->row(step.index, step.end, row_);
+  auto checkpoint = checkpoint_of(*session_, *clock_);
+  checkpoint.plugins = plugins_of(case_, checksums_);
+  if (results_ != nullptr) checkpoint.outputs = results_->outputs();
+  if (history_ != nullptr) history_->flush();
+  const auto wait_for_files = [history = history_.get(), results = results_.get()] {
+    if (history != nullptr) history->sync();
+    MULLION_REQUIRE(results == nullptr || results->wait_for_outputs(), Errc::io,
+                    "a result file before it could not be written");
+  };
+  checkpoints_.submit(step, io::to_image(checkpoint), wait_for_files, std::move(done));
+  checkpoint_step_ = step;
+  ++n_checkpoints_;
+  checkpoint_ns_ += nanoseconds_since(begin);
+}
+
+void Recorder::save_last_commit() noexcept
+{
+  if (session_ == nullptr || !has_begun_) return; // the start-up never ended
+  try {
+    if (results_ != nullptr) results_->flush(); // what cannot be written leaves the list of outputs
+  } catch (const std::exception& problem) {
+    log::error("run", "results: {}", problem.what());
   }
-  for (std::size_t s = 0; s < series_.size(); ++s) {
-    series_[s].times.push_back(step.end);
-    series_[s].values.push_back(measure(columns_[series_columns_[s]]));
+  try {
+    write_checkpoint();
+    checkpoints_.wait();
+    if (const auto step = clock_->step(); checkpoints_.last_step() == step)
+      log::info("run", "the state after step {} is in {}; go on with --restart", step,
+                (out_ / io::checkpoint_name(step)).string());
+  } catch (const std::exception& problem) {
+    log::error("run", "no checkpoint of step {}: {}", clock_->step(), problem.what());
   }
-  if (is_output) results_->write(step.index, step.end, snapshot());
-  output_ns_ += nanoseconds_since(begin);
+}
+
+void Recorder::note(std::int64_t step, const std::string& what, const std::string& instance, const std::string& detail)
+{
+  record_.attempts.back().events.push_back({step, what, instance, detail});
+  // On disk at once, in case the run is killed; but a run that is steered all the time does not write all the time.
+  if (Clock::now() - noted_ < std::chrono::seconds(1)) return;
+  io::write_run_record(out_ / "run.json", record_);
+  noted_ = Clock::now();
 }
 
 // ---- result files ------------------------------------------------------------------------------------------------
 
-std::vector<io::WindowData> Recorder::snapshot() const
+std::vector<io::WindowData> Recorder::snapshot(shm::Storage storage) const
 {
   std::vector<io::WindowData> out;
   for (std::uint32_t w = 0; w < control_.n_windows; ++w) {
@@ -267,7 +438,7 @@ std::vector<io::WindowData> Recorder::snapshot() const
       pane.reference_coordinates = raw.coordinates;
       const auto fields = view.fields();
       for (std::uint32_t f = 0; f < fields.size(); ++f) {
-        if (fields[f].pane != p) continue;
+        if (fields[f].pane != p || static_cast<shm::Storage>(fields[f].storage) != storage) continue;
         const auto* data = session_->windows().locate(w, f, 1, control_.epoch.load()).data;
         io::FieldData field;
         field.name = fields[f].name;
@@ -297,24 +468,18 @@ void Recorder::collect_timings()
                                  static_cast<double>(timing.wall_ns) * ns, static_cast<double>(timing.work_ns) * ns,
                                  static_cast<double>(timing.wall_ns - timing.work_ns) * ns});
     }
-  attempt.timings.push_back({"mullion", "output", control_.step + 1, static_cast<double>(output_ns_) * ns,
-                             static_cast<double>(output_ns_) * ns, 0.0});
+  const auto n_steps = control_.step - attempt.first_step;
+  const auto add = [&](const char* call, std::int64_t count, double seconds) {
+    attempt.timings.push_back({"mullion", call, count, seconds, seconds, 0.0});
+  };
+  add("output", n_steps + 1, static_cast<double>(output_ns_) * ns);
+  if (n_checkpoints_ > 0) add("checkpoint", n_checkpoints_, static_cast<double>(checkpoint_ns_) * ns);
   double calls = 0.0;
   for (const auto& timing : attempt.timings)
     if (timing.call != attach_call) calls += timing.wall_s;
   // What is left: the driver's own arithmetic, commits, audits. (In a run of very few steps the calls of the start-up,
   // which are counted too, may be longer than all steps.)
-  const double rest = std::max(0.0, attempt.wall_s - calls);
-  attempt.timings.push_back({"mullion", "driver and commit", control_.step, rest, rest, 0.0});
-}
-
-void Recorder::note(const std::string& what, const std::string& instance, const std::string& detail)
-{
-  record_.attempts.back().events.push_back({control_.step, what, instance, detail});
-  // On disk at once, in case the run is killed; but a run that is steered all the time does not write all the time.
-  if (Clock::now() - noted_ < std::chrono::seconds(1)) return;
-  io::write_run_record(out_ / "run.json", record_);
-  noted_ = Clock::now();
+  add("driver and commit", n_steps, std::max(0.0, attempt.wall_s - calls));
 }
 
 void Recorder::finish(const std::string& outcome, const std::string& error) noexcept
@@ -333,6 +498,10 @@ void Recorder::finish(const std::string& outcome, const std::string& error) noex
     }
   };
   if (session_ != nullptr) collect_timings();
+  checkpoints_.wait(); // its thread may wait for the two below
+  attempt_to("checkpoints", [&] {
+    for (const auto& file : io::list_checkpoints(out_)) attempt.files.push_back(file.path.filename().string());
+  });
   if (history_ != nullptr) attempt_to("history.csv", [&] { history_->close(); });
   if (results_ != nullptr) attempt_to("results", [&] { results_->finish(); });
   attempt_to("run.json", [&] { io::write_run_record(out_ / "run.json", record_); });

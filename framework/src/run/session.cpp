@@ -169,10 +169,15 @@ std::string Session::who(const Module& module) const
   return fmt::format("module '{}' ({}, process {})", config.instance, config.plugin, module.host->pid);
 }
 
+const char* Session::call_name(const Module& module)
+{
+  return module.operation == Operation::call ? module.entries->functions[module.function].name
+                                             : shm::to_string(module.operation);
+}
+
 std::string Session::where(const Module& module) const
 {
-  const auto call = module.operation == Operation::call ? module.entries->functions[module.function].name
-                                                        : shm::to_string(module.operation);
+  const auto* call = call_name(module);
   if (!is_running_ && control_.step == 0) return fmt::format("in {}, before the first step", call);
   if (!is_running_) return fmt::format("in {}, after step {}", call, control_.step.load());
   return fmt::format("in {}, step {}, t = {} s", call, module.step.index, module.step.begin);
@@ -183,8 +188,9 @@ void Session::fail(const Module& module, Errc code, const std::string& what) con
   throw Error(code, fmt::format("{} failed {}: {}", who(module), where(module), what));
 }
 
-void Session::fail_by_end(const Module& module, const std::string& how) const
+void Session::fail_by_end(const Module& module, const std::string& how)
 {
+  last_death_ = fmt::format("'{}' {}, in {}", module.config->instance, how, call_name(module));
   throw Error(Errc::process, fmt::format("{} {}, {}", who(module), how, where(module)));
 }
 

@@ -5,6 +5,7 @@
 // call at hand throws an Error that names it; when this process dies, the hosts go with it.
 #pragma once
 
+#include "io/checkpoint.hpp"
 #include "module/module_runtime.hpp"
 #include "plugin/catalogue.hpp"
 #include "process/supervisor.hpp"
@@ -45,6 +46,12 @@ public:
   // ---- the run loop's side (setup.cpp, session.cpp) ----
   /// Fresh start: spawn, define, wire, attach, start; all levels then hold the initial state.
   void start_fresh();
+  /// The same from a checkpoint: spawn, windows from the file, attach. (session_restore.cpp)
+  /// @param changed  modules with other parameters than then: their windows must have the same shape all the same
+  /// @throws Error Errc::config: the checkpoint's windows are not those of this case and its plug-ins
+  void start_from(const io::Checkpoint& from, const std::set<std::string>& changed);
+  /// A start-up failed: kill what there is of hosts and forget all windows, so that it can be done again.
+  void forget_start();
   /// Begin a coupling step from the last commit: forget what was written, arm driver/state.
   void begin_attempt();
   void run_driver(const TimeStep& step);
@@ -54,9 +61,14 @@ public:
   void commit(const TimeStep& step);
   /// Fresh processes for all modules in hosts, a new driver object; state comes from the windows.
   void renew();
-  /// After a host died: await what is in flight elsewhere, respawn the dead, attach them and a new driver object.
-  /// @return names of the respawned modules; "" if no host is dead
-  std::string recover();
+  /// Await what is in flight, whatever comes of it: a failed step leaves calls behind.
+  void quiesce();
+  /// After a host died: quiesce, respawn the dead, attach them and a new driver object.
+  /// @return instances of the respawned modules; none if no host is dead
+  /// @throws Error Errc::process: one died again meanwhile; call it again, or give up
+  std::vector<std::string> recover();
+  /// The last death: which module, how, in which call; the same text if the same happens again.
+  [[nodiscard]] const std::string& last_death() const { return last_death_; }
   /// Ask the hosts to quit; kills what does not.
   void shut_down();
 
@@ -99,6 +111,8 @@ public:
   [[nodiscard]] std::vector<CallTiming> timings_so_far(std::uint32_t module) const;
   /// Text for a post-mortem: the last lines of every host that died.
   [[nodiscard]] std::string post_mortem() const;
+  /// The case as it stands, for a checkpoint: what was swapped or set since the start counts.
+  [[nodiscard]] const std::string& case_text() const { return case_.text; }
   /// What the driver declared: connections, state, net lag, …
   [[nodiscard]] const Wiring& wiring() const { return *wiring_; }
   [[nodiscard]] const std::optional<Ledger>& ledger() const { return ledger_; }
@@ -125,6 +139,7 @@ private:
     std::uint32_t conflicts = 0;            ///< modules that read its windows, or whose windows it reads, in place
     std::vector<FieldAddress> large_fields; ///< exchanged, and left to us by its runtime to check
     bool in_flight = false;
+    bool is_attached = false; ///< its host knows its windows
     shm::Operation operation = shm::Operation::none;
     std::uint32_t function = 0;
     TimeStep step;
@@ -177,8 +192,17 @@ private:
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> find_function_windows(const std::string& instance,
                                                                               const mullion_module& entries) const;
   Wiring make_driver();
+  void attach_all(const TimeStep& at);
   void attach_again(const std::vector<std::uint32_t>& modules);
   void find_conflicts();
+
+  // session_restore.cpp
+  void restore_module_windows(const io::Checkpoint& from);
+  void restore_own_windows(const io::Checkpoint& from);
+  void restore_levels(std::uint32_t window, const io::CheckpointWindow& from);
+  void check_definition(std::uint32_t module);
+
+  // setup.cpp
   Wiring make_wiring() const;
 
   // session.cpp
@@ -188,9 +212,10 @@ private:
   void await_host(Module& module);
   [[noreturn]] void fail(const Module& module, Errc code, const std::string& what) const;
   /// Its process ended, by itself or by us. @param how "was killed by signal 9 (SIGKILL)"
-  [[noreturn]] void fail_by_end(const Module& module, const std::string& how) const;
+  [[noreturn]] void fail_by_end(const Module& module, const std::string& how);
   [[nodiscard]] std::string who(const Module& module) const;
   [[nodiscard]] std::string where(const Module& module) const;
+  [[nodiscard]] static const char* call_name(const Module& module); ///< that it is in, or was in last
 
   // session_checks.cpp
   void check_later(std::uint32_t module); ///< what its runtime left of its last call
@@ -218,6 +243,7 @@ private:
   std::optional<Ledger> ledger_;
   std::vector<std::uint32_t> write_order_;
   std::uint32_t n_in_flight_ = 0;
+  std::string last_death_;
   std::vector<Check> checks_; ///< of this attempt
   std::size_t n_settled_ = 0;
   Checker checker_;         ///< after windows_, into which it looks

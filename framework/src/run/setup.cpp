@@ -54,10 +54,8 @@ void Session::start_fresh()
   make_companions();
   make_driver_state();
   find_conflicts();
-  make_driver();
-  call_all(Operation::attach, initial);
-  Coupling coupling(this);
-  driver_->attach(coupling);
+  (void)make_driver();
+  attach_all(initial);
 
   shm::roll_back(control_);
   if (state_window_ != shm::no_window) control_.working[state_window_].is_written = 1;
@@ -68,6 +66,25 @@ void Session::start_fresh()
     if (control_.windows[w].owner == shm::Owner::orchestrator) shm::seal(windows_.view(w), table.windows[w]);
   shm::roll_back(control_);
   is_running_ = true;
+}
+
+void Session::forget_start()
+{
+  driver_.reset();
+  trial_.reset();
+  driver_parameters_ = &case_.driver_parameters;
+  forget_checks();
+  for (auto& module : modules_)
+    if (module.host != nullptr) supervisor_.kill(*module.host);
+  modules_ = std::vector<Module>(case_.modules.size());
+  n_in_flight_ = 0;
+  windows_.forget_all();
+  objects_.clear();
+  wiring_.reset();
+  state_window_ = shm::no_window;
+  ledger_.reset();
+  write_order_.clear();
+  shm::forget_windows_and_modules(control_);
 }
 
 void Session::renew()
@@ -82,19 +99,29 @@ void Session::renew()
   attach_again(in_hosts);
 }
 
-std::string Session::recover()
+void Session::quiesce()
 {
-  std::vector<std::uint32_t> dead;
-  std::string names;
   for (std::uint32_t m = 0; m < modules_.size(); ++m) {
     try {
       await(m);
     } catch (const Error& error) {
-      log::debug("run", "while recovering: {}", error.what());
+      log::debug("run", "while waiting for calls of a failed step: {}", error.what());
     }
-    if (modules_[m].host == nullptr || !modules_[m].host->is_dead) continue;
+  }
+}
+
+std::vector<std::string> Session::recover()
+{
+  quiesce();
+  std::vector<std::uint32_t> dead;
+  std::vector<std::string> names;
+  for (std::uint32_t m = 0; m < modules_.size(); ++m) {
+    auto& module = modules_[m];
+    if (module.host == nullptr) continue;
+    if (!module.is_attached) supervisor_.kill(*module.host); // another one's death kept it from attaching
+    if (!module.host->is_dead) continue;
     dead.push_back(m);
-    names += (names.empty() ? "'" : ", '") + modules_[m].config->instance + "'";
+    names.push_back(module.config->instance);
   }
   if (!dead.empty()) attach_again(dead);
   return names;
@@ -110,7 +137,8 @@ void Session::attach_again(const std::vector<std::uint32_t>& modules)
     for (const auto m : modules) begin(m, operation, 0, at, at.end);
     for (const auto m : modules) await(m);
   }
-  make_driver();
+  for (const auto m : modules) modules_[m].is_attached = true;
+  (void)make_driver();
   Coupling coupling(this);
   driver_->attach(coupling);
   is_running_ = true;
@@ -188,6 +216,7 @@ void Session::describe(std::uint32_t m)
 void Session::spawn(std::uint32_t m)
 {
   auto& module = modules_[m];
+  module.is_attached = false;
   if (module.config->is_process) {
     module.host = supervisor_.spawn(m);
     return;
@@ -203,6 +232,14 @@ void Session::call(std::uint32_t module, Operation operation, const TimeStep& st
 {
   begin(module, operation, 0, step, step.end);
   await(module);
+}
+
+void Session::attach_all(const TimeStep& at)
+{
+  call_all(Operation::attach, at);
+  for (auto& module : modules_) module.is_attached = true;
+  Coupling coupling(this);
+  driver_->attach(coupling);
 }
 
 void Session::call_all(Operation operation, const TimeStep& step)
@@ -230,6 +267,7 @@ Wiring Session::make_driver()
   driver_.reset(catalogue_.open(case_.scheme).driver().create(values.data()));
   auto wiring = make_wiring(); // a driver may look at it in define; the connections are already made
   driver_->define(wiring);
+  config::drop_declined_offers(wiring, case_, catalogue_);
   return wiring;
 }
 

@@ -58,7 +58,8 @@ std::string summary(const Recorder& recorder, const std::string& stopped_by)
 {
   const auto& attempt = recorder.attempt();
   const auto& c = recorder.the_case();
-  const double per_step = attempt.wall_s / static_cast<double>(std::max<std::int64_t>(1, attempt.steps));
+  const auto n_done = attempt.steps - attempt.first_step;
+  const double per_step = attempt.wall_s / static_cast<double>(std::max<std::int64_t>(1, n_done));
   std::string text = fmt::format("run {}: {}{}, {} steps to t = {} s in {} ({} a step)\n", c.name, attempt.outcome,
                                  stopped_by.empty() ? "" : " by " + stopped_by, attempt.steps, attempt.simulated_time,
                                  duration(attempt.wall_s), duration(per_step));

@@ -62,6 +62,7 @@ void Session::try_module(std::uint32_t m, ModuleCase candidate, const mullion_mo
     call(m, Operation::create, at);
     if (module.host != nullptr) call(m, Operation::park, at);
     call(m, Operation::attach, at);
+    module.is_attached = true;
     attach_driver(); // functions may have other numbers now, or not be there
     if (module.host != nullptr) hand_over(m, at);
   } catch (const std::exception& error) {
@@ -99,6 +100,7 @@ void Session::restore_parked()
   auto& module = modules_[trial_->module];
   if (module.host != nullptr) supervisor_.kill(*module.host);
   static_cast<Carrier&>(module) = std::move(trial_->parked);
+  module.is_attached = true;
   arrange_timings(module);
   describe(trial_->module);
   if (module.host == nullptr) return;

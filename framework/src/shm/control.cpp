@@ -16,6 +16,18 @@ const Control& checked_control(const std::byte* object, std::uint64_t bytes)
   return control;
 }
 
+void forget_windows_and_modules(Control& control)
+{
+  for (auto& module : control.modules) {
+    module.n_parameters = module.n_exchanged = module.n_histories = 0;
+    module.interface_window[0] = '\0';
+  }
+  for (auto& window : control.windows) window = {};
+  for (auto& working : control.working) working = {};
+  control.n_modules = control.n_windows = 0;
+  control.current.module = no_module;
+}
+
 void copy_text(char* to, std::size_t capacity, std::string_view text, std::string_view what)
 {
   MULLION_REQUIRE(text.size() < capacity, Errc::config, "the {} '{}' is longer than {} characters", what, text,

@@ -189,6 +189,10 @@ struct Reply {
 /// Check an attached control object. @throws Error Errc::memory
 const Control& checked_control(const std::byte* object, std::uint64_t bytes);
 
+/// Before a start-up is done again: no windows, no modules. Numbers of requests and incarnations go on, so that what an
+/// earlier host left is not taken for an answer.
+void forget_windows_and_modules(Control& control);
+
 /// Copy a name into a fixed array, with a clear error if it does not fit. @throws Error Errc::config
 void copy_text(char* to, std::size_t capacity, std::string_view text, std::string_view what);
 

@@ -21,6 +21,12 @@ public:
   void allow(std::uint32_t module) { writable_modules_ |= 1u << module; }
   /// Its windows are unmapped, and mapped read-only when next looked at.
   void forbid(std::uint32_t module);
+  /// No mapping and no right is left.
+  void forget_all()
+  {
+    writable_modules_ = 0;
+    entries_ = {};
+  }
 
   [[nodiscard]] const Control& control() const { return control_; }
 

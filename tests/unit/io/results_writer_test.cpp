@@ -168,17 +168,28 @@ TEST_CASE("a run that goes on in the same folder ends with the index of one that
 {
   const Scratch whole, parts;
   write_run(whole.path(), "run", {0, 10, 20, 30});
-  write_run(parts.path(), "run", {0, 10, 20}); // 20 lies behind the checkpoint of step 15
   const SmallRun run;
+  OutputList at_step_15;
+  {
+    ResultsWriter writer(parts.path(), "run");
+    writer.begin(run.mesh());
+    for (const std::int64_t step : {0, 10, 20}) { // 20 lies behind the checkpoint of step 15
+      if (step == 20) at_step_15 = writer.outputs();
+      writer.write(step, 1e-3 * static_cast<double>(step), run.fields());
+    }
+  }
+  REQUIRE(fs::exists(parts / "results/000000020.h5"));
 
   ResultsWriter writer(parts.path(), "run");
-  const auto n_kept = writer.keep_outputs_before(16);
+  writer.go_on_from(at_step_15);
+  CHECK(!fs::exists(parts / "results/000000020.h5"));
+  CHECK(writer.has_output(10));
+  CHECK(!writer.has_output(20));
   writer.begin(run.mesh());
   writer.write(20, 1e-3 * 20.0, run.fields());
   writer.write(30, 1e-3 * 30.0, run.fields());
   writer.finish();
 
-  CHECK(n_kept == 2);
   CHECK(all_files(parts.path()) == all_files(whole.path()));
 }
 
@@ -215,20 +226,24 @@ TEST_CASE("after a flush the indices name all outputs so far")
   writer.flush();
 
   CHECK(Opened(out / "results.h5")->i64("/steps") == std::vector<std::int64_t>{1, 2, 3});
-  CHECK(ResultsWriter(out.path(), "run").keep_outputs_before(100) == 3);
+  CHECK(writer.wait_for_outputs());
 }
 
-TEST_CASE("outputs whose files went away, and an index that is not ours, are not kept")
+TEST_CASE("outputs whose files went away are not kept, and a damaged list is refused")
 {
   const Scratch out;
   write_run(out.path(), "run", {0, 10, 20});
   fs::remove(out / "results/000000010.h5");
+  const OutputList list{{0, 10, 20}, {0.0, 0.01, 0.02}, {0, 0, 0}, {"layout"}};
 
-  CHECK(ResultsWriter(out.path(), "run").keep_outputs_before(100) == 2);
-  std::ofstream(out / "results.xdmf") << "<Xdmf/>";
-  CHECK(ResultsWriter(out.path(), "run").keep_outputs_before(100) == 0);
-  fs::remove(out / "results.xdmf");
-  CHECK(ResultsWriter(out.path(), "run").keep_outputs_before(100) == 0);
+  ResultsWriter writer(out.path(), "run");
+  writer.go_on_from(list);
+
+  CHECK(writer.outputs().steps == std::vector<std::int64_t>{0, 20});
+  CHECK_THROWS_WITH(ResultsWriter(out.path(), "run").go_on_from({{0}, {0.0}, {1}, {"layout"}}),
+                    "the output of step 0 has layout 1 of 1");
+  CHECK_THROWS_WITH(ResultsWriter(out.path(), "run").go_on_from({{0, 1}, {0.0}, {0}, {"layout"}}),
+                    "a list of outputs has 2 steps, 1 times and 1 layouts");
 }
 
 TEST_CASE("a result file that is there already is replaced")

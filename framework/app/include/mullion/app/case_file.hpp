@@ -51,6 +51,8 @@ struct Case {
   double start_time = 0.0, end_time = 0.0, dt = 0.0;    ///< [s]
   double call_deadline = 300.0, start_deadline = 600.0; ///< [s]; 0: none
   std::string on_failure = "stop";
+  std::string on_divergence = "stop";
+  std::int64_t max_halvings = 6;   ///< of a step, with on_divergence = "halve_dt"
   std::vector<ModuleCase> modules; ///< in the order fluid, structure, mesh_motion, transfer, then by name
   std::vector<InterfaceCase> interfaces;
   double reference_pressure = 0.0;
@@ -61,7 +63,9 @@ struct Case {
   std::vector<ConnectionCase> connections;
   std::int64_t output_every = 0; ///< steps between result files; 0: none
   bool has_history = true;
-  std::int64_t history_every = 1; ///< steps between its rows
+  std::int64_t history_every = 1;    ///< steps between its rows
+  std::int64_t checkpoint_every = 0; ///< steps between checkpoints; 0: none but that of a run that ends early
+  std::int64_t keep_checkpoints = 2; ///< so many stay; 0: all
   std::vector<Expectation> expectations;
   std::string text; ///< the case as it is run, overrides included: what case.toml will say
 };
@@ -83,6 +87,8 @@ struct CaseResult {
   std::vector<Diagnostic> diagnostics;
 };
 CaseResult read_case(const std::string& file, const CaseOptions& options);
+/// The same of a text. @param file what messages call it
+CaseResult read_case_text(const std::string& text, const std::string& file, const CaseOptions& options);
 
 /// One line per mistake, "place: error: message", and a last line that counts them.
 std::string describe(const std::string& file, const std::vector<Diagnostic>& diagnostics);

@@ -8,9 +8,10 @@
 namespace mullion {
 
 struct RunOptions {
-  std::string case_file;
+  std::string case_file; ///< with restart it may be "": the case that the checkpoint holds
   CaseOptions case_options;
   std::string out;     ///< results folder; "" is out/<run name>
+  std::string restart; ///< a checkpoint's file, or "latest": the newest good one of the results folder; "": a new run
   bool replay = false; ///< every step twice from restored windows, compared byte for byte
   int amnesia = 0;     ///< every K-th step again by fresh processes and a new driver; 0: never
   bool has_deadlines = true;
