@@ -228,6 +228,16 @@ TEST_SUITE("full")
     CHECK(coarse.frequency < 572.0);
   }
 
+  TEST_CASE("the steady flow lifts the rigid arch")
+  {
+    const RunFolder folder;
+    run_paper_case(folder, "flow_shell_steady", {});
+
+    const auto history = read_history(folder / "out" / "history.csv");
+    CHECK(history.at("fluid.volume.residual").back() < 4e-4);
+    CHECK(std::abs(history.at("fluid.wall.force_y").back() - 210.0) < 5.0); // N/m, another implementation's pressures
+  }
+
   TEST_CASE("the solid behind the superseismic shock has the exact slope, with 5 % of the paper's gas")
   {
     const RunFolder folder;
