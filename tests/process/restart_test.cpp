@@ -249,7 +249,7 @@ TEST_CASE("a host that is killed while it is started anew is started once more")
   const auto result = run->wait();
 
   CHECK_MESSAGE(result.exit_code == 0, result.err);
-  CHECK(has(result.err, "was killed by signal 9 (SIGKILL), in attach, after step));
+  CHECK(has(result.err, "was killed by signal 9 (SIGKILL), in attach, after step"));
   CHECK(test::difference_of_part(folder / "out", folder / "whole") == "");
 }
 
