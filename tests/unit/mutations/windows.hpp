@@ -154,7 +154,7 @@ inline void seal(std::vector<std::byte>& object)
 /// reach beyond the object. @returns a sum over all that was read, so that reading it is no dead code
 inline std::uint64_t walk(const shm::WindowView& view, const std::vector<std::byte>& object)
 {
-  std::uint64_t sum = 0;
+  std::uint64_t sum = std::strlen(view.header().name);
   const auto read = [&](const void* from, std::uint64_t size, std::uint64_t multiple) {
     const auto at = static_cast<std::uint64_t>(static_cast<const std::byte*>(from) - object.data());
     REQUIRE(at <= object.size());
@@ -191,6 +191,22 @@ inline std::uint64_t walk(const shm::WindowView& view, const std::vector<std::by
   }
   for (std::uint32_t s = 0; s < header.n_slots; ++s) read(view.slot(s), header.slot_bytes, 64);
   return sum;
+}
+
+/// Open an object and walk through it if it is accepted. @returns is it refused, with its name and a reason?
+inline bool is_refused(std::vector<std::byte>& object, const std::string& name)
+{
+  try {
+    const shm::WindowView view(object.data(), object.size(), name);
+    CHECK(walk(view, object) > 0);
+    return false;
+  } catch (const Error& error) {
+    CHECK(error.code() == Errc::memory);
+    const std::string text = error.what();
+    CHECK_MESSAGE(text.starts_with("window " + name + ": "), text);
+    CHECK_MESSAGE(text.find("expected") != std::string::npos, text);
+    return true;
+  }
 }
 
 } // namespace mullion::testing

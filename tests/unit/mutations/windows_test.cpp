@@ -16,22 +16,6 @@ using namespace mullion::testing;
 
 namespace {
 
-/// @returns is it refused?
-bool is_refused(std::vector<std::byte>& object, const std::string& name)
-{
-  try {
-    const shm::WindowView view(object.data(), object.size(), name);
-    CHECK(walk(view, object) > 0);
-    return false;
-  } catch (const Error& error) {
-    CHECK(error.code() == Errc::memory);
-    const std::string text = error.what();
-    CHECK_MESSAGE(text.starts_with("window " + name + ": "), text);
-    CHECK_MESSAGE(text.find("expected") != std::string::npos, text);
-    return true;
-  }
-}
-
 void damage_windows(std::uint64_t count)
 {
   std::vector<std::pair<std::string, std::vector<std::byte>>> samples;
