@@ -279,7 +279,8 @@ void use(const Checkpoint& checkpoint)
     if (!clock.is_at_end()) CHECK(std::isfinite(clock.next().end));
     clock.advance();
   } catch (const Error& error) {
-    CHECK(std::string(error.what()).find("run") != std::string::npos); // the case's times, or the checkpoint's
+    const std::string text = error.what(); // the checkpoint's clock, or the case's times
+    CHECK_MESSAGE((text.find("checkpoint") != std::string::npos || text.find("run.") != std::string::npos), text);
   }
 }
 
