@@ -61,8 +61,63 @@ private:
   const Place* everywhere_;
 };
 
+/// The TOML library limits how deep values nest, but not of how many parts a key is, and each part is a table in a
+/// table: some ten thousand of them end the process, for lack of stack. A case's keys have two or three.
+constexpr int most_key_parts = 8;
+
+bool is_bare(char c)
+{
+  return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || ('0' <= c && c <= '9') || c == '_' || c == '-';
+}
+
+/// Behind the part of a key that starts at `at`: bare, or between quotes that close on the same line.
+std::size_t end_of_part(std::string_view text, std::size_t at)
+{
+  if (is_bare(text[at])) {
+    while (at < text.size() && is_bare(text[at])) ++at;
+    return at;
+  }
+  for (auto end = at + 1; end < text.size() && text[end] != '\n'; ++end) {
+    if (text[end] == text[at]) return end + 1;
+    if (text[end] == '\\' && text[at] == '"') ++end;
+  }
+  return at + 1;
+}
+
+/// Where the first key of too many parts stands, if there is one; as keys, all that could be one is counted.
+std::optional<Place> find_long_key(std::string_view text)
+{
+  int line = 1, n_parts = 0;
+  bool is_behind_dot = false;
+  std::size_t line_begin = 0, key_begin = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    if (is_bare(c) || c == '"' || c == '\'') {
+      if (!is_behind_dot) {
+        n_parts = 0;
+        key_begin = i;
+      }
+      if (++n_parts > most_key_parts) return Place{line, static_cast<int>(key_begin - line_begin) + 1, ""};
+      is_behind_dot = false;
+      i = end_of_part(text, i);
+      continue;
+    }
+    ++i;
+    if (c == '.') is_behind_dot = n_parts > 0;
+    else if (c != ' ' && c != '\t') {
+      n_parts = 0;
+      is_behind_dot = false;
+    }
+    if (c != '\n') continue;
+    ++line;
+    line_begin = i;
+  }
+  return std::nullopt;
+}
+
 std::optional<toml::table> try_parse(const std::string& text)
 {
+  if (find_long_key(text)) return std::nullopt;
   try {
     return toml::parse(std::string_view(text));
   } catch (const toml::parse_error&) {
@@ -74,6 +129,9 @@ std::optional<toml::table> try_parse(const std::string& text)
 
 std::variant<Node, SyntaxError> parse_toml(const std::string& text)
 {
+  if (const auto place = find_long_key(text))
+    return SyntaxError{*place,
+                       fmt::format("a key of more than {} parts; expected a table's name and a key's", most_key_parts)};
   try {
     Node root = Converter(nullptr).convert(toml::parse(std::string_view(text)));
     root.place = {};

@@ -12,6 +12,14 @@ bool Wiring::has(const std::string& kind) const
                      [&](const auto& instance) { return instance.first == kind; });
 }
 
+const std::vector<InterfacePair>& Wiring::interfaces() const
+{
+  MULLION_REQUIRE(!interfaces_.empty(), Errc::config,
+                  "it couples windows of two modules, and the case lists none; add [coupling] with interfaces = "
+                  "[[\"fluid.wall\", \"structure.wet\"]], or choose a scheme without a pair");
+  return interfaces_;
+}
+
 std::string Wiring::instance(const std::string& kind) const
 {
   const auto found =

@@ -3,6 +3,7 @@
 #include <mullion/sdk/error.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace mullion::io {
 namespace {
@@ -34,8 +35,16 @@ void write_clock(ImageBuilder& image, const CheckpointClock& clock)
 CheckpointClock read_clock(const ImageReader& image)
 {
   CheckpointClock clock;
-  const auto integer = [&](const char* name, std::int64_t& value) { value = image.i64_attribute("/clock", name); };
-  const auto real = [&](const char* name, double& value) { value = image.f64_attribute("/clock", name); };
+  constexpr std::int64_t most =
+      1'000'000'000'000'000; // a run has fewer steps (run/time_plan.hpp): sums cannot overflow
+  const auto integer = [&](const char* name, std::int64_t& value) {
+    value = image.i64_attribute("/clock", name);
+    MULLION_REQUIRE(0 <= value && value <= most, Errc::io, "its clock's {} is {}, expected 0 to {}", name, value, most);
+  };
+  const auto real = [&](const char* name, double& value) {
+    value = image.f64_attribute("/clock", name);
+    MULLION_REQUIRE(std::isfinite(value), Errc::io, "its clock's {} is {}, expected a finite number", name, value);
+  };
   integer("step", clock.step);
   real("time", clock.time);
   real("dt", clock.dt);
@@ -121,8 +130,12 @@ Checkpoint from_image(const ImageReader& image)
   const auto instances = image.texts("/plugins/instance"), kinds = image.texts("/plugins/kind"),
              names = image.texts("/plugins/name"), versions = image.texts("/plugins/version"),
              builds = image.texts("/plugins/build");
+  for (const auto* list : {&kinds, &names, &versions, &builds})
+    MULLION_REQUIRE(list->size() == instances.size(), Errc::io,
+                    "it lists {} instances with {} kinds, {} names, {} versions and {} builds of plug-ins",
+                    instances.size(), kinds.size(), names.size(), versions.size(), builds.size());
   for (std::size_t i = 0; i < instances.size(); ++i)
-    checkpoint.plugins.push_back({instances[i], kinds.at(i), names.at(i), versions.at(i), builds.at(i)});
+    checkpoint.plugins.push_back({instances[i], kinds[i], names[i], versions[i], builds[i]});
 
   auto& outputs = checkpoint.outputs;
   outputs.steps = image.i64("/outputs/steps");

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <numeric>
 
 namespace mullion::io {
 namespace {
@@ -295,7 +294,8 @@ Bytes ImageBuilder::finish()
 
 // ---- reading ----------------------------------------------------------------------------------------------
 
-ImageReader::ImageReader(std::span<const std::byte> image, std::string source) : source_(std::move(source))
+ImageReader::ImageReader(std::span<const std::byte> image, std::string source)
+    : source_(std::move(source)), size_(image.size())
 {
   const auto access = core_access();
   // HDF5 copies the buffer; it takes a non-const pointer and leaves the bytes alone
@@ -346,6 +346,22 @@ bool ImageReader::holds_f64(const std::string& path) const
   return H5Tget_class(stored.get()) == H5T_FLOAT && H5Tget_size(stored.get()) == sizeof(double);
 }
 
+std::size_t ImageReader::count(const std::string& path, std::size_t each) const
+{
+  const auto sizes = extents(path);
+  if (std::find(sizes.begin(), sizes.end(), 0) != sizes.end()) return 0;
+  std::uint64_t n = 1;
+  for (const auto size : sizes) {
+    const auto more = static_cast<std::uint64_t>(size);
+    MULLION_REQUIRE(size > 0 && more <= size_ / n, Errc::io,
+                    "{}:{} claims to have {} times {} entries, in a file of {} bytes", source_, path, n, more, size_);
+    n *= more;
+  }
+  MULLION_REQUIRE(each > 0 && n <= size_ / each, Errc::io,
+                  "{}:{} claims to have {} entries of {} bytes, in a file of {}", source_, path, n, each, size_);
+  return n;
+}
+
 template <class T> std::vector<T> ImageReader::read(const std::string& path, std::int64_t type) const
 {
   const auto where = source_ + ":" + path;
@@ -353,9 +369,7 @@ template <class T> std::vector<T> ImageReader::read(const std::string& path, std
   const auto stored = own(H5Dget_type(set.get()), H5Tclose, "read the type of", where);
   MULLION_REQUIRE(H5Tget_class(stored.get()) == H5Tget_class(type) && H5Tget_size(stored.get()) == sizeof(T), Errc::io,
                   "{} does not hold numbers of the expected type ({} bytes each)", where, sizeof(T));
-  const auto sizes = extents(path);
-  std::vector<T> values(
-      static_cast<std::size_t>(std::accumulate(sizes.begin(), sizes.end(), std::int64_t{1}, std::multiplies<>())));
+  std::vector<T> values(count(path, sizeof(T)));
   if (values.empty()) return values;
   check(H5Dread(set.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read", where);
   return values;
@@ -382,7 +396,7 @@ std::vector<std::string> ImageReader::texts(const std::string& path) const
                       extents(path).size() == 1,
                   Errc::io, "{} does not hold a list of texts", where);
   const auto longest = H5Tget_size(stored.get());
-  std::string block(longest * static_cast<std::size_t>(extents(path)[0]), '\0');
+  std::string block(longest * count(path, longest), '\0');
   if (!block.empty())
     check(H5Dread(set.get(), fixed_text(longest).get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, block.data()), "read", where);
   std::vector<std::string> texts;

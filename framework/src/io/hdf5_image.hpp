@@ -113,11 +113,15 @@ public:
   [[nodiscard]] std::int64_t i64_attribute(const std::string& path, const std::string& name) const;
 
 private:
+  /// Entries of a dataset. Ours are stored whole and as they are: one that claims more than the file has is damage,
+  /// and no memory is asked for.
+  [[nodiscard]] std::size_t count(const std::string& path, std::size_t each) const;
   template <class T> std::vector<T> read(const std::string& path, std::int64_t type) const;
   void read_attribute(const std::string& path, const std::string& name, int type_class, std::int64_t type,
                       void* value) const;
 
   std::string source_;
+  std::size_t size_; ///< of the file [bytes]
   Hdf5Handle file_;
 };
 

@@ -170,7 +170,7 @@ void Session::describe_modules()
     record.is_inline = module.config->is_process ? 0 : 1;
     for (const auto& offset : wiring_->clock_offsets)
       if (offset.instance == module.config->instance) module.clock_offset = offset.steps * case_.dt;
-    for (const auto& pair : wiring_->interfaces())
+    for (const auto& pair : case_.interfaces)
       for (const auto& path : {pair.fluid, pair.structure})
         if (const auto [instance, window] = split_window(path); instance == module.config->instance)
           copy(record.interface_window, window, "window name");

@@ -201,6 +201,7 @@ WindowView::WindowView(std::byte* object, std::uint64_t bytes, std::string_view 
   };
   const auto fixed_end = h.fixed_offset + h.fixed_bytes;
   require(h.fixed_bytes <= bytes && fixed_end <= bytes, "the fixed part's end", fixed_end, bytes);
+  require(h.dimension <= 3, "the number of coordinates a node", h.dimension, 3);
   require(h.n_slots >= 1 && h.n_slots <= MULLION_MAX_LEVELS + 1, "the number of slots", h.n_slots,
           MULLION_MAX_LEVELS + 1);
   require(h.slot_bytes <= bytes / h.n_slots && inside(h.slots_offset, h.n_slots * h.slot_bytes, fixed_end, bytes) &&
@@ -212,8 +213,11 @@ WindowView::WindowView(std::byte* object, std::uint64_t bytes, std::string_view 
   for (const auto& p : panes()) {
     require(p.n_nodes >= 0 && p.n_nodes <= INT32_MAX, "a pane's number of nodes", static_cast<std::uint64_t>(p.n_nodes),
             INT32_MAX);
+    require(p.n_elements >= 0 && p.n_elements <= INT32_MAX, "a pane's number of elements",
+            static_cast<std::uint64_t>(p.n_elements), INT32_MAX);
     const auto n = static_cast<std::uint64_t>(p.n_nodes) * h.dimension * sizeof(double);
-    require(p.coordinates_offset == 0 || inside(p.coordinates_offset, n, h.fixed_offset, fixed_end),
+    require(p.coordinates_offset == 0 ||
+                (inside(p.coordinates_offset, n, h.fixed_offset, fixed_end) && p.coordinates_offset % alignment == 0),
             "a pane's coordinates' offset", p.coordinates_offset, h.fixed_offset);
     require(std::uint64_t{p.first_block} + p.n_blocks <= h.n_blocks, "a pane's last block",
             std::uint64_t{p.first_block} + p.n_blocks, h.n_blocks);
@@ -224,8 +228,8 @@ WindowView::WindowView(std::byte* object, std::uint64_t bytes, std::string_view 
       require(b.n_elements >= 0 && b.n_elements <= INT32_MAX, "a block's number of elements",
               static_cast<std::uint64_t>(b.n_elements), INT32_MAX);
       const auto size = static_cast<std::uint64_t>(b.n_elements) * b.nodes_per_element * sizeof(std::int32_t);
-      require(inside(b.connectivity_offset, size, h.fixed_offset, fixed_end), "a block's connectivity offset",
-              b.connectivity_offset, h.fixed_offset);
+      require(inside(b.connectivity_offset, size, h.fixed_offset, fixed_end) && b.connectivity_offset % alignment == 0,
+              "a block's connectivity offset", b.connectivity_offset, h.fixed_offset);
       const auto* nodes = reinterpret_cast<const std::int32_t*>(object + b.connectivity_offset);
       for (std::uint64_t i = 0; i < size / sizeof(std::int32_t); ++i)
         require(nodes[i] >= 0 && nodes[i] < p.n_nodes, "a node number in the connectivity",
@@ -278,6 +282,9 @@ int WindowView::find_field(std::uint32_t pane, std::string_view name) const
 mullion_pane WindowView::pane(std::uint32_t index, std::vector<mullion_block>& out) const
 {
   const auto& record = panes()[index];
+  MULLION_REQUIRE(record.coordinates_offset != 0 || record.n_nodes == 0, Errc::shape,
+                  "window {}: its pane {} holds no mesh; a companion's mesh is that of the window it belongs to",
+                  header().name, index);
   out.clear();
   for (const auto& b : blocks().subspan(record.first_block, record.n_blocks))
     out.push_back({b.element, b.nodes_per_element, b.n_elements,

@@ -119,6 +119,7 @@ public:
   }
   [[nodiscard]] std::byte* object() const { return object_; }
   /// The mesh of a pane; `blocks` is filled and must outlive the result.
+  /// @throws Error Errc::shape if the pane has nodes and no mesh (a companion's)
   [[nodiscard]] mullion_pane pane(std::uint32_t index, std::vector<mullion_block>& blocks) const;
 
 private:

@@ -65,7 +65,9 @@ public:
   /// @throws Error Errc::config if the case has none
   [[nodiscard]] std::string instance(const std::string& kind) const;
   [[nodiscard]] bool has(const std::string& kind) const;
-  [[nodiscard]] const std::vector<InterfacePair>& interfaces() const { return interfaces_; }
+  /// At least one pair: a scheme that couples nothing does not ask.
+  /// @throws Error Errc::config if the case lists none
+  [[nodiscard]] const std::vector<InterfacePair>& interfaces() const;
 
   /// The receiver reads the source in place: no copy. Legal where the two never run at the same time.
   void bind(const std::string& receiver, const std::string& source, TimePolicy policy = TimePolicy::constant)
