@@ -18,7 +18,6 @@
 
 #include <atomic>
 #include <deque>
-#include <functional>
 #include <mutex>
 #include <string>
 #include <vector>
