@@ -27,6 +27,7 @@ template <int D> struct Scheme {
   int order = 2; ///< in space: 1 or 2
   LimiterOptions<D> limiter;
   Integrator integrator = Integrator::jameson;
+  Width width = Width::best; ///< of vectors; no bit depends on it
 };
 
 /// What a boundary face delivered in a step, as the Runge-Kutta scheme integrates it; walls only.

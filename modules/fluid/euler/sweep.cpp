@@ -97,7 +97,7 @@ template <int D> void Solver<D>::find_gradients(const Part& part)
   const GradientPass<D> pass{mesh_, geometry_, scheme_.limiter, values_, gradients_};
 #if defined(__x86_64__)
   static const bool is_wide = __builtin_cpu_supports("avx2") != 0;
-  if (is_wide) return find_gradients_wide<D>(pass, part.begin, part.end);
+  if (is_wide && scheme_.width == Width::best) return find_gradients_wide<D>(pass, part.begin, part.end);
 #endif
   find_gradients_loop<D>(pass, part.begin, part.end);
 }
@@ -155,7 +155,7 @@ template <int D> void Solver<D>::gather(Part& part, std::size_t k, std::size_t f
 template <int D> void Solver<D>::flux_between(Part& part, std::size_t n)
 {
   auto& batch = part.batch;
-  if (scheme_.flux == Flux::hllc) hllc_fluxes<D>(scheme_.gas, batch, n);
+  if (scheme_.flux == Flux::hllc) hllc_fluxes<D>(scheme_.gas, batch, n, scheme_.width);
   else roe_fluxes<D>(scheme_.gas, batch, n);
   for (std::size_t i = 0; i < part.n_boundary; ++i) {
     const auto [k, b] = part.boundary[i];
