@@ -17,4 +17,8 @@ if(MULLION_SANITIZE)
   list(JOIN MULLION_SANITIZE "," sanitizers)
   add_compile_options(-fsanitize=${sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=undefined -g1)
   add_link_options(-fsanitize=${sanitizers})
+  if("address" IN_LIST MULLION_SANITIZE)
+    # Each of the two halves compile times. A null pointer's access ends in the address sanitizer's report anyway.
+    add_compile_options(-O1 -fno-sanitize=null)
+  endif()
 endif()

@@ -2,7 +2,8 @@
 # Install what is missing, build, and test.
 #
 #   scripts/test.sh          the short tier: every kind of test
-#   scripts/test.sh --full   also every repetition, and the suite under the sanitizers (address + undefined, thread);
+#   scripts/test.sh --full   also every repetition, and the suite under the sanitizers (address + undefined, there with the
+#                            mutated checkpoints, windows and cases of the full unit tests; thread);
 #                            the outcome is written to docs/results/full_tier.md
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -48,6 +49,6 @@ run() { # run TITLE build_and_test-arguments…
   echo
 } >"$record"
 run "Release, short and full" test -C Full -- -DCMAKE_BUILD_TYPE=Release
-run "Address and undefined-behaviour sanitizer" asan -L short -- -DCMAKE_BUILD_TYPE=RelWithDebInfo "-DMULLION_SANITIZE=address;undefined"
+run "Address and undefined-behaviour sanitizer" asan -C Full -L "short|unit" -- -DCMAKE_BUILD_TYPE=RelWithDebInfo "-DMULLION_SANITIZE=address;undefined"
 run "Thread sanitizer" tsan -L short -- -DCMAKE_BUILD_TYPE=RelWithDebInfo -DMULLION_SANITIZE=thread
 exit $failed
