@@ -8,33 +8,13 @@
 
 #include "mullion_run.hpp"
 
-#include <chrono>
 #include <cstring>
-#include <fcntl.h>
 
 namespace {
 
 namespace fs = std::filesystem;
 using namespace mullion;
-
-double milliseconds(const std::function<void()>& action)
-{
-  const auto begin = std::chrono::steady_clock::now();
-  action();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-}
-
-void write_plainly(const fs::path& path, std::span<const std::byte> bytes)
-{
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  for (std::size_t done = 0; done < bytes.size();) {
-    const auto n = ::write(fd, bytes.data() + done, std::min<std::size_t>(bytes.size() - done, 1u << 30));
-    if (n <= 0) std::exit(1);
-    done += static_cast<std::size_t>(n);
-  }
-  ::fsync(fd);
-  ::close(fd);
-}
+using bench::milliseconds;
 
 void measure(std::size_t megabytes, int rounds, const fs::path& folder)
 {
@@ -49,7 +29,7 @@ void measure(std::size_t megabytes, int rounds, const fs::path& folder)
     io::Image image;
     copies.push_back(milliseconds([&] { io::Bytes(values).swap(copy); })); // into memory that is new, as an image is
     images.push_back(milliseconds([&] { image = io::to_image(checkpoint); }));
-    plain.push_back(milliseconds([&] { write_plainly(folder / "plain", image); }));
+    plain.push_back(milliseconds([&] { bench::write_plainly(folder / "plain", image); }));
     atomic.push_back(milliseconds([&] { write_atomically(folder / "checkpoint.h5", image, io::Trailer::checksum); }));
     image = {};
     reads.push_back(milliseconds([&] { (void)io::read_checkpoint(folder / "checkpoint.h5"); }));

@@ -92,7 +92,7 @@ struct Run {
 
 /// Run a case file for this many steps; what run.json says a step took.
 Run mullion_step(const std::string& case_file, std::vector<std::string> sets, long steps, bool with_memory,
-                 const std::string& plugin_path = MULLION_BUILD_DIR "/bench/plugins")
+                 const std::string& plugin_path = mullion::bench::echo_plugins)
 {
   sets.insert(sets.begin(), fmt::format("run.end_time={}.0", steps));
   Run run;
@@ -101,27 +101,6 @@ Run mullion_step(const std::string& case_file, std::vector<std::string> sets, lo
       mullion::bench::mullion_run(case_file, sets, plugin_path, with_memory ? watch : std::function<void(pid_t)>{});
   run.step_s = attempt.at("wall_s").get<double>() / static_cast<double>(steps);
   return run;
-}
-
-std::string echo_case()
-{
-  const auto path = fs::temp_directory_path() / fmt::format("mullion-bench-{}.toml", ::getpid());
-  std::ofstream(path) << R"([run]
-name = "bench-coupled-step"
-dt = 1.0
-end_time = 1.0
-[fluid]
-module = "echo_fluid"
-[structure]
-module = "echo_structure"
-[coupling]
-interfaces = [["fluid.wall", "structure.wet"]]
-[driver]
-scheme = "echo"
-[output]
-history = false
-)";
-  return path;
 }
 
 } // namespace
@@ -134,7 +113,8 @@ int main(int argc, char** argv)
     if (std::strcmp(argv[i], "--rounds") == 0) rounds = std::atoi(argv[i + 1]);
     if (std::strcmp(argv[i], "--largest") == 0) largest = std::atol(argv[i + 1]);
   }
-  const auto file = echo_case();
+  const auto file = fs::temp_directory_path() / fmt::format("mullion-bench-{}.toml", ::getpid());
+  mullion::bench::write_echo_case({.name = "bench-coupled-step"}, file);
   fmt::print("{:>9} {:>12} {:>12} {:>8} {:>12} {:>8} {:>16}\n", "nodes", "floor", "two proc.", "/ floor", "inline",
              "/ floor", "memory - fields");
   for (const long nodes : {10L, 100L, 1000L, 10'000L, 100'000L, 1'000'000L}) {

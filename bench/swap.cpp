@@ -1,177 +1,145 @@
-// What it costs to change a live run: a death until it is noticed, until its step is done again by a new process; a
-// swap until its first step is committed, in a process and inline, with small and with large windows. And the two
-// things that make it possible: a commit, and re-arming a window, beside a plain copy of its bytes. Medians.
+// What it costs to change a live run, for a module whose state has 1 MB to 1 GB: a death until it is noticed, until its
+// step is done again by a new process; a swap until its first step is committed, in a process and inline; a checkpoint
+// until it is on disk. Each beside its floor in the same run: a bare parent of a process with as much memory; an
+// ordinary step, and what a restart cannot do without, attach and commit; a plain write and sync of the same bytes. All
+// interleaved; medians of times and of the rounds' ratios.
 //
-//   build-dev/bench/swap [--rounds R] [--largest NODES]
-#include "mullion_run.hpp"
+//   build-dev/bench/swap [--rounds R] [--largest MB] [--folder DIR]
+#include "live_run.hpp"
 
-#include "shm/levels.hpp"
-#include "shm/memory_object.hpp"
-#include "shm/window_layout.hpp"
-
-#include <mullion/app/inspect.hpp>
 #include <mullion/app/live_runs.hpp>
-#include <mullion/sdk/error.hpp>
 
-#include <chrono>
-#include <csignal>
 #include <cstring>
-#include <memory>
-#include <stdexcept>
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using mullion::bench::LiveRun;
 using mullion::bench::median;
+using mullion::bench::milliseconds;
+using mullion::bench::milliseconds_since;
 namespace fs = std::filesystem;
 namespace shm = mullion::shm;
 
-double milliseconds_since(Clock::time_point begin)
+constexpr std::uint32_t structure = 1; ///< the second module of the case
+
+constexpr const char* name = "bench-swap";
+
+/// A live run of two modules whose steps cost next to nothing but the copy of a state of so many bytes, which the
+/// structure has.
+LiveRun start(const fs::path& base, std::size_t megabytes, bool in_processes)
 {
-  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  const auto folder = base / fmt::format("mullion-bench-{}", ::getpid());
+  fs::create_directories(folder);
+  mullion::bench::write_echo_case({.name = name,
+                                   .in_processes = in_processes,
+                                   .structure = fmt::format("module = \"store_structure\"\nmegabytes = {}", megabytes),
+                                   .end_time = 1e9,
+                                   .on_failure = in_processes ? "respawn" : "stop"},
+                                  folder / "case.toml");
+  return {name, {(folder / "case.toml").string()}, mullion::bench::echo_plugins, folder};
 }
 
-/// A live run of two modules whose steps cost next to nothing; it ends with this object.
-class LiveRun {
-public:
-  LiveRun(long nodes, bool in_processes)
-      : folder_(fs::temp_directory_path() / fmt::format("mullion-bench-{}", ::getpid()))
-  {
-    fs::create_directories(folder_);
-    std::ofstream(folder_ / "case.toml") << fmt::format(R"([run]
-name = "bench-swap"
-dt = 1.0
-end_time = 1e9
-on_failure = "{1}"
-[fluid]
-module = "echo_fluid"
-nodes = {0}
-process = {2}
-[structure]
-module = "echo_structure"
-nodes = {0}
-process = {2}
-[coupling]
-interfaces = [["fluid.wall", "structure.wet"]]
-[driver]
-scheme = "echo"
-[output]
-history = false
-)",
-                                                        nodes, in_processes ? "respawn" : "stop", in_processes);
-    std::fflush(stdout);
-    pid_ = ::fork();
-    if (pid_ == 0) {
-      ::setenv("MULLION_PLUGIN_PATH", MULLION_BUILD_DIR "/bench/plugins", 1);
-      (void)!std::freopen("/dev/null", "w", stdout);
-      ::chdir(folder_.c_str());
-      ::execl(MULLION_BUILD_DIR "/bin/mullion", "mullion", "run", "case.toml", "--log-level", "off", nullptr);
-      ::_exit(127);
-    }
-    for (int i = 0; i < 10'000; ++i) {
-      try {
-        if (mullion::look_at_run(name).step > 2) break;
-      } catch (const mullion::Error&) { // not yet
-      }
-      ::usleep(1000);
-    }
-    // The control object, as an onlooker maps it: what is polled below costs the run nothing.
-    const auto run = mullion::look_at_run(name);
-    for (const auto& entry : fs::directory_iterator(fmt::format("/proc/{}/fd", run.orchestrator)))
-      if (fs::read_symlink(entry).string().find("mullion:control") != std::string::npos)
-        mapping_ = shm::map_object(static_cast<pid_t>(run.orchestrator), std::stoi(entry.path().filename()),
-                                   shm::Access::read_only);
-    if (mapping_.data == nullptr) throw std::runtime_error("the run did not start");
-  }
-  ~LiveRun()
-  {
-    ::kill(pid_, SIGTERM);
-    ::waitpid(pid_, nullptr, 0);
-    fs::remove_all(folder_);
-  }
-  LiveRun(const LiveRun&) = delete;
-  LiveRun& operator=(const LiveRun&) = delete;
-
-  [[nodiscard]] const shm::Control& control() const { return *reinterpret_cast<const shm::Control*>(mapping_.data); }
-  void wait_steps(std::int64_t n) const
-  {
-    const auto end = control().step + n;
-    while (control().step < end) ::usleep(100);
-  }
-  static constexpr const char* name = "bench-swap";
-
-private:
-  fs::path folder_;
-  pid_t pid_ = 0;
-  shm::Mapping mapping_;
-};
-
+/// From the kill of a host: until the orchestrator has reaped it, until its successor is being started, until the next
+/// commit [ms].
 struct Recovery {
-  double noticed_ms = 0, done_ms = 0;
+  double noticed = 0, answered = 0, done = 0;
 };
 
-/// Kill a module's host; how long until its successor is being started, and until the next commit.
-Recovery kill_host(const LiveRun& run, std::uint32_t module)
+Recovery kill_host(const LiveRun& run)
 {
-  const auto& record = run.control().modules[module];
+  const auto& record = run.control().modules[structure];
   const auto incarnation = record.incarnation;
   const volatile auto* seen = &record.incarnation;
+  const auto pid = record.pid;
+  Recovery found;
   const auto begin = Clock::now();
-  ::kill(record.pid, SIGKILL);
+  ::kill(pid, SIGKILL);
+  while (::kill(pid, 0) == 0) ::usleep(20);
+  found.noticed = milliseconds_since(begin);
   while (*seen == incarnation) ::usleep(20);
+  found.answered = milliseconds_since(begin);
   const auto epoch = run.control().epoch.load();
-  Recovery found{milliseconds_since(begin), 0};
   while (run.control().epoch.load() == epoch) ::usleep(20);
-  found.done_ms = milliseconds_since(begin);
+  found.done = milliseconds_since(begin);
   return found;
 }
 
-double swap(const std::string& target, const std::string& plugin)
+/// A process with as much shared memory, killed: how long until a parent that does nothing else has reaped it [ms].
+double bare_death(const shm::Mapping& object)
 {
-  const auto begin = Clock::now();
-  (void)mullion::swap_module(LiveRun::name, target, plugin, {});
-  return milliseconds_since(begin);
+  int ready[2];
+  if (::pipe(ready) != 0) throw std::runtime_error("no pipe");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    for (std::uint64_t at = 0; at < object.bytes; at += shm::page) object.data[at] = std::byte{1};
+    (void)!::write(ready[1], "", 1);
+    for (;;) ::pause();
+  }
+  char byte = 0;
+  (void)!::read(ready[0], &byte, 1);
+  ::close(ready[0]);
+  ::close(ready[1]);
+  return milliseconds([&] {
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+  });
 }
 
-/// A window with one carried vector on so many nodes, in two slots.
-void levels(long nodes, int rounds)
+double swap()
 {
-  shm::WindowPlan plan;
-  plan.name = "fluid/volume";
-  plan.dimension = 3;
-  plan.panes.push_back({0, nodes, 0, nullptr, nullptr, 0, 3});
-  shm::FieldPlan field;
-  field.name = "velocity";
-  field.unit = "m/s";
-  field.components = 3;
-  field.entities = nodes;
-  plan.fields.push_back(field);
-  const auto bytes = shm::window_bytes(plan);
-  const auto object = shm::create_object(plan.name, bytes);
-  const auto mapping = shm::map_object(::getpid(), object.get(), shm::Access::read_write);
-  shm::write_window(plan, mapping.data, mapping.bytes);
-  const shm::WindowView view(mapping.data, mapping.bytes, plan.name);
-  const auto control = std::make_unique<shm::Control>();
-  control->n_windows = 1;
-  shm::initialise_levels(*control, 0, 2, 0.0, 1.0);
-  std::vector<char> from(static_cast<std::size_t>(nodes) * 24, 'a'), to(from.size(), 'b');
+  return milliseconds([] { (void)mullion::swap_module(name, "structure", "store_structure", {}); });
+}
 
-  std::vector<double> arm, copy, commit;
-  const int repeats = static_cast<int>(std::max(1L, 10'000'000 / (24 * nodes + 1000)));
-  const auto measure = [&](std::vector<double>& out, auto&& body) {
-    const auto begin = Clock::now();
-    for (int i = 0; i < repeats; ++i) body();
-    out.push_back(1e3 * milliseconds_since(begin) / repeats);
-  };
+/// One attach of the structure, as the run saw it, its mapping of the windows included [ms].
+double attach(const LiveRun& run)
+{
+  const auto look = run.look();
+  for (const auto& call : look.modules[structure].calls)
+    if (call.call == "attach" && call.count > 0) return 1e3 * call.wall_s / static_cast<double>(call.count);
+  throw std::runtime_error("the structure was never attached");
+}
+
+struct Samples {
+  std::vector<double> step, bare, noticed, notice_ratio, answered, done, done_ratio, attach, swap, swap_ratio, in_line,
+      plain, checkpoint, checkpoint_ratio;
+};
+
+void measure_in_processes(Samples& s, std::size_t megabytes, int rounds, const fs::path& base)
+{
+  const LiveRun run = start(base, megabytes, true);
+  const auto object = shm::create_object("bare", 2 * megabytes * 1'000'000); // as the window's two slots
+  const auto mapping = shm::map_object(::getpid(), object.get(), shm::Access::read_write);
+  const std::vector<std::byte> bytes(megabytes * 1'000'000, std::byte{1});
+  const int n_steps = megabytes < 100 ? 50 : 3;
   for (int r = 0; r < rounds; ++r) {
-    measure(arm, [&] { shm::arm(view, control->table(control->epoch).windows[0]); });
-    measure(copy, [&] { std::memcpy(to.data(), from.data(), to.size()); });
-    measure(commit, [&] {
-      control->working[0].is_written = 1;
-      shm::commit(*control);
-    });
+    run.wait_steps(2);
+    s.step.push_back(milliseconds([&] { run.wait_steps(n_steps); }) / n_steps);
+    s.bare.push_back(bare_death(mapping));
+    const auto found = kill_host(run);
+    s.noticed.push_back(found.noticed);
+    s.notice_ratio.push_back(found.noticed / s.bare.back());
+    s.answered.push_back(found.answered);
+    s.done.push_back(found.done);
+    s.attach.push_back(attach(run));
+    s.done_ratio.push_back(found.done / (s.step.back() + s.attach.back()));
+    run.wait_steps(2);
+    s.swap.push_back(swap());
+    s.swap_ratio.push_back(s.swap.back() / (s.step.back() + s.attach.back()));
+    run.wait_steps(2);
+    s.plain.push_back(milliseconds([&] { mullion::bench::write_plainly(run.folder() / "plain", bytes); }));
+    s.checkpoint.push_back(milliseconds([] { (void)mullion::request_checkpoint(name); }));
+    s.checkpoint_ratio.push_back(s.checkpoint.back() / s.plain.back());
   }
-  fmt::print("{:>9} {:>10.3f} us {:>10.3f} us {:>10.3f} us\n", nodes, median(arm), median(copy), median(commit));
+}
+
+void measure_inline(Samples& s, std::size_t megabytes, int rounds, const fs::path& base)
+{
+  const LiveRun run = start(base, megabytes, false);
+  for (int r = 0; r < rounds; ++r) {
+    run.wait_steps(2);
+    s.in_line.push_back(swap());
+  }
 }
 
 } // namespace
@@ -179,40 +147,35 @@ void levels(long nodes, int rounds)
 int main(int argc, char** argv)
 {
   int rounds = 15;
-  long largest = 1'000'000;
+  std::size_t largest = 1000;
+  fs::path base = fs::temp_directory_path();
   for (int i = 1; i + 1 < argc; i += 2) {
     if (std::strcmp(argv[i], "--rounds") == 0) rounds = std::atoi(argv[i + 1]);
-    if (std::strcmp(argv[i], "--largest") == 0) largest = std::atol(argv[i + 1]);
+    if (std::strcmp(argv[i], "--largest") == 0) largest = static_cast<std::size_t>(std::atol(argv[i + 1]));
+    if (std::strcmp(argv[i], "--folder") == 0) base = argv[i + 1];
   }
   ::setenv("MULLION_RUNTIME_DIR", fmt::format("/tmp/mullion-bench-rt-{}", ::getpid()).c_str(), 1);
-  fmt::print("{:>9} {:>14} {:>16} {:>18} {:>14}\n", "nodes", "death noticed", "step done again", "swap, in processes",
-             "swap, inline");
-  for (const long nodes : {10L, 1000L, 100'000L, 1'000'000L}) {
-    if (nodes > largest) break;
-    std::vector<double> noticed, done, in_process, in_line;
-    {
-      const LiveRun run(nodes, true);
-      for (int r = 0; r < rounds; ++r) {
-        run.wait_steps(5);
-        const auto found = kill_host(run, static_cast<std::uint32_t>(r % 2));
-        noticed.push_back(found.noticed_ms);
-        done.push_back(found.done_ms);
-        run.wait_steps(5);
-        in_process.push_back(swap(r % 2 == 0 ? "fluid" : "structure", r % 2 == 0 ? "echo_fluid" : "echo_structure"));
-      }
-    }
-    {
-      const LiveRun run(nodes, false);
-      for (int r = 0; r < rounds; ++r) {
-        run.wait_steps(5);
-        in_line.push_back(swap(r % 2 == 0 ? "fluid" : "structure", r % 2 == 0 ? "echo_fluid" : "echo_structure"));
-      }
-    }
-    fmt::print("{:>9} {:>11.2f} ms {:>13.2f} ms {:>15.2f} ms {:>11.2f} ms\n", nodes, median(noticed), median(done),
-               median(in_process), median(in_line));
-    std::fflush(stdout);
+  std::vector<std::pair<std::size_t, Samples>> sizes;
+  for (std::size_t megabytes = 1; megabytes <= largest; megabytes *= 10) {
+    auto& s = sizes.emplace_back(megabytes, Samples{}).second;
+    measure_in_processes(s, megabytes, rounds, base);
+    measure_inline(s, megabytes, rounds, base);
   }
-  fmt::print("\n{:>9} {:>13} {:>13} {:>13}\n", "nodes", "re-arm", "plain copy", "commit");
-  for (const long nodes : {10L, 1000L, 100'000L, 1'000'000L}) levels(nodes, rounds);
   fs::remove_all(std::getenv("MULLION_RUNTIME_DIR"));
+
+  fmt::print("| state | bare parent | death noticed | / bare | successor started |\n|---|---|---|---|---|\n");
+  for (const auto& [megabytes, s] : sizes)
+    fmt::print("| {} MB | {:.2f} ms | {:.2f} ms | {:.1f} | {:.2f} ms |\n", megabytes, median(s.bare), median(s.noticed),
+               median(s.notice_ratio), median(s.answered));
+  fmt::print(
+      "\n| state | a step | attach | death until its step is done again | / (step + attach) | swap, in processes | "
+      "/ (step + attach) | swap, inline |\n|---|---|---|---|---|---|---|---|\n");
+  for (const auto& [megabytes, s] : sizes)
+    fmt::print("| {} MB | {:.3f} ms | {:.3f} ms | {:.2f} ms | {:.1f} | {:.2f} ms | {:.1f} | {:.2f} ms |\n", megabytes,
+               median(s.step), median(s.attach), median(s.done), median(s.done_ratio), median(s.swap),
+               median(s.swap_ratio), median(s.in_line));
+  fmt::print("\n| state | plain write | checkpoint on request, on disk | / plain |\n|---|---|---|---|\n");
+  for (const auto& [megabytes, s] : sizes)
+    fmt::print("| {} MB | {:.1f} ms | {:.1f} ms | {:.2f} |\n", megabytes, median(s.plain), median(s.checkpoint),
+               median(s.checkpoint_ratio));
 }
