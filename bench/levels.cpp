@@ -1,7 +1,7 @@
 // What the two things cost that make a step repeatable, beside a plain copy of the bytes that they are about: arming a
 // window (its carried state is copied into the working level) and a commit (which copies nothing). One window in two
-// slots, from 1 MB to 1 GB of state; the copy is from one half to the other of an object of the same kind. Interleaved;
-// medians of times and of the rounds' ratios.
+// slots, from 1 MB to 1 GB of state; the copy is from one half to the other of an object of the same kind. By turns;
+// medians of times and of ratios, so that what neighbours took of the processor falls out.
 //
 //   build-dev/bench/levels [--rounds R] [--largest MB]
 #include "mullion_run.hpp"
@@ -54,16 +54,13 @@ void measure(std::size_t megabytes, int rounds)
   };
 
   std::vector<double> copies, arms, commits, arm_ratios, commit_ratios;
-  const int repeats = static_cast<int>(std::max<std::size_t>(1, 20 / megabytes));
-  for (int r = -1; r < rounds; ++r) { // the first maps the pages
-    double copy = 0.0, arm = 0.0, done = 0.0;
-    for (int i = 0; i < repeats; ++i) {
-      auto *to = halves.data + (i % 2 == 0 ? bytes : 0), *from = halves.data + (i % 2 == 0 ? 0 : bytes);
-      copy += milliseconds([&] { std::memcpy(to, from, bytes); }) / repeats;
-      arm += milliseconds([&] { shm::arm(view, control->table(control->epoch).windows[0]); }) / repeats;
-      done += milliseconds(commit) / repeats;
-    }
-    if (r < 0) continue;
+  const auto n = std::max<std::size_t>(1, 200 / megabytes) * static_cast<std::size_t>(rounds);
+  const auto half = [&](std::size_t i) { return halves.data + (i % 2) * bytes; };
+  for (std::size_t i = 0; i < n + 2; ++i) {
+    const double copy = milliseconds([&] { std::memcpy(half(i), half(i + 1), bytes); });
+    const double arm = milliseconds([&] { shm::arm(view, control->table(control->epoch).windows[0]); });
+    const double done = milliseconds(commit);
+    if (i < 2) continue; // they map the pages
     copies.push_back(copy);
     arms.push_back(arm);
     commits.push_back(done);

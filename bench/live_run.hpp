@@ -35,10 +35,12 @@ public:
     }
     // The control object, as an onlooker maps it: what is polled costs the run nothing.
     const auto run = look();
-    for (const auto& entry : std::filesystem::directory_iterator(fmt::format("/proc/{}/fd", run.orchestrator)))
-      if (std::filesystem::read_symlink(entry).string().find("mullion:control") != std::string::npos)
+    for (const auto& entry : std::filesystem::directory_iterator(fmt::format("/proc/{}/fd", run.orchestrator))) {
+      std::error_code closed_meanwhile;
+      if (std::filesystem::read_symlink(entry, closed_meanwhile).string().find("mullion:control") != std::string::npos)
         mapping_ = shm::map_object(static_cast<pid_t>(run.orchestrator), std::stoi(entry.path().filename()),
                                    shm::Access::read_only);
+    }
     if (mapping_.data == nullptr) throw std::runtime_error("the run did not start");
   }
   ~LiveRun()

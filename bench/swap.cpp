@@ -1,15 +1,17 @@
 // What it costs to change a live run, for a module whose state has 1 MB to 1 GB: a death until it is noticed, until its
 // step is done again by a new process; a swap until its first step is committed, in a process and inline; a checkpoint
-// until it is on disk. Each beside its floor in the same run: a bare parent of a process with as much memory; an
-// ordinary step, and what a restart cannot do without, attach and commit; a plain write and sync of the same bytes. All
+// until it is on disk. Each beside its floor in the same run: the kernel's taking the process apart; an ordinary
+// step, and what a restart cannot do without, attach and commit; a plain write and sync of the same bytes. All
 // interleaved; medians of times and of the rounds' ratios.
 //
-//   build-dev/bench/swap [--rounds R] [--largest MB] [--folder DIR]
+//   build-dev/bench/swap [--rounds R] [--smallest MB] [--largest MB] [--folder DIR]
 #include "live_run.hpp"
 
 #include <mullion/app/live_runs.hpp>
 
 #include <cstring>
+#include <poll.h>
+#include <sys/syscall.h>
 
 namespace {
 
@@ -40,10 +42,10 @@ LiveRun start(const fs::path& base, std::size_t megabytes, bool in_processes)
   return {name, {(folder / "case.toml").string()}, mullion::bench::echo_plugins, folder};
 }
 
-/// From the kill of a host: until the orchestrator has reaped it, until its successor is being started, until the next
-/// commit [ms].
+/// From the kill of a host: until the kernel has taken it apart, memory and all, as any onlooker learns; until the
+/// orchestrator has reaped it; until its successor is being started; until the next commit [ms].
 struct Recovery {
-  double noticed = 0, answered = 0, done = 0;
+  double dead = 0, noticed = 0, answered = 0, done = 0;
 };
 
 Recovery kill_host(const LiveRun& run)
@@ -52,9 +54,13 @@ Recovery kill_host(const LiveRun& run)
   const auto incarnation = record.incarnation;
   const volatile auto* seen = &record.incarnation;
   const auto pid = record.pid;
+  const shm::Descriptor onlooker(static_cast<int>(::syscall(SYS_pidfd_open, pid, 0)));
+  pollfd polled{onlooker.get(), POLLIN, 0};
   Recovery found;
   const auto begin = Clock::now();
   ::kill(pid, SIGKILL);
+  ::poll(&polled, 1, -1);
+  found.dead = milliseconds_since(begin);
   while (::kill(pid, 0) == 0) ::usleep(20);
   found.noticed = milliseconds_since(begin);
   while (*seen == incarnation) ::usleep(20);
@@ -63,27 +69,6 @@ Recovery kill_host(const LiveRun& run)
   while (run.control().epoch.load() == epoch) ::usleep(20);
   found.done = milliseconds_since(begin);
   return found;
-}
-
-/// A process with as much shared memory, killed: how long until a parent that does nothing else has reaped it [ms].
-double bare_death(const shm::Mapping& object)
-{
-  int ready[2];
-  if (::pipe(ready) != 0) throw std::runtime_error("no pipe");
-  const pid_t child = ::fork();
-  if (child == 0) {
-    for (std::uint64_t at = 0; at < object.bytes; at += shm::page) object.data[at] = std::byte{1};
-    (void)!::write(ready[1], "", 1);
-    for (;;) ::pause();
-  }
-  char byte = 0;
-  (void)!::read(ready[0], &byte, 1);
-  ::close(ready[0]);
-  ::close(ready[1]);
-  return milliseconds([&] {
-    ::kill(child, SIGKILL);
-    ::waitpid(child, nullptr, 0);
-  });
 }
 
 double swap()
@@ -101,24 +86,22 @@ double attach(const LiveRun& run)
 }
 
 struct Samples {
-  std::vector<double> step, bare, noticed, notice_ratio, answered, done, done_ratio, attach, swap, swap_ratio, in_line,
+  std::vector<double> step, dead, noticed, notice_ratio, answered, done, done_ratio, attach, swap, swap_ratio, in_line,
       plain, checkpoint, checkpoint_ratio;
 };
 
 void measure_in_processes(Samples& s, std::size_t megabytes, int rounds, const fs::path& base)
 {
   const LiveRun run = start(base, megabytes, true);
-  const auto object = shm::create_object("bare", 2 * megabytes * 1'000'000); // as the window's two slots
-  const auto mapping = shm::map_object(::getpid(), object.get(), shm::Access::read_write);
   const std::vector<std::byte> bytes(megabytes * 1'000'000, std::byte{1});
   const int n_steps = megabytes < 100 ? 50 : 3;
   for (int r = 0; r < rounds; ++r) {
     run.wait_steps(2);
     s.step.push_back(milliseconds([&] { run.wait_steps(n_steps); }) / n_steps);
-    s.bare.push_back(bare_death(mapping));
     const auto found = kill_host(run);
+    s.dead.push_back(found.dead);
     s.noticed.push_back(found.noticed);
-    s.notice_ratio.push_back(found.noticed / s.bare.back());
+    s.notice_ratio.push_back(found.noticed / found.dead);
     s.answered.push_back(found.answered);
     s.done.push_back(found.done);
     s.attach.push_back(attach(run));
@@ -145,27 +128,29 @@ void measure_inline(Samples& s, std::size_t megabytes, int rounds, const fs::pat
 } // namespace
 
 int main(int argc, char** argv)
-{
+try {
   int rounds = 15;
-  std::size_t largest = 1000;
+  std::size_t smallest = 1, largest = 1000;
   fs::path base = fs::temp_directory_path();
   for (int i = 1; i + 1 < argc; i += 2) {
     if (std::strcmp(argv[i], "--rounds") == 0) rounds = std::atoi(argv[i + 1]);
+    if (std::strcmp(argv[i], "--smallest") == 0) smallest = static_cast<std::size_t>(std::atol(argv[i + 1]));
     if (std::strcmp(argv[i], "--largest") == 0) largest = static_cast<std::size_t>(std::atol(argv[i + 1]));
     if (std::strcmp(argv[i], "--folder") == 0) base = argv[i + 1];
   }
   ::setenv("MULLION_RUNTIME_DIR", fmt::format("/tmp/mullion-bench-rt-{}", ::getpid()).c_str(), 1);
   std::vector<std::pair<std::size_t, Samples>> sizes;
-  for (std::size_t megabytes = 1; megabytes <= largest; megabytes *= 10) {
+  for (std::size_t megabytes = smallest; megabytes <= largest; megabytes *= 10) {
     auto& s = sizes.emplace_back(megabytes, Samples{}).second;
     measure_in_processes(s, megabytes, rounds, base);
     measure_inline(s, megabytes, rounds, base);
   }
   fs::remove_all(std::getenv("MULLION_RUNTIME_DIR"));
 
-  fmt::print("| state | bare parent | death noticed | / bare | successor started |\n|---|---|---|---|---|\n");
+  fmt::print("| state | killed until dead | until noticed | / dead | until its successor is started "
+             "|\n|---|---|---|---|---|\n");
   for (const auto& [megabytes, s] : sizes)
-    fmt::print("| {} MB | {:.2f} ms | {:.2f} ms | {:.1f} | {:.2f} ms |\n", megabytes, median(s.bare), median(s.noticed),
+    fmt::print("| {} MB | {:.2f} ms | {:.2f} ms | {:.1f} | {:.2f} ms |\n", megabytes, median(s.dead), median(s.noticed),
                median(s.notice_ratio), median(s.answered));
   fmt::print(
       "\n| state | a step | attach | death until its step is done again | / (step + attach) | swap, in processes | "
@@ -178,4 +163,7 @@ int main(int argc, char** argv)
   for (const auto& [megabytes, s] : sizes)
     fmt::print("| {} MB | {:.1f} ms | {:.1f} ms | {:.2f} |\n", megabytes, median(s.plain), median(s.checkpoint),
                median(s.checkpoint_ratio));
+} catch (const std::exception& error) {
+  fmt::print(stderr, "swap: {}\n", error.what());
+  return 1;
 }
