@@ -5,7 +5,7 @@
 // arithmetic, companions, the ledger, commits). History and result files are off. Rounds are interleaved; medians of
 // times and of the rounds' shares.
 //
-//   build-dev/bench/plane_step [--rounds R] [--steps N]
+//   build-dev/bench/plane_step [--rounds R] [--steps N] [--case NAME, say closed_box]
 #include "live_run.hpp"
 
 #include <cmath>
@@ -147,11 +147,14 @@ int main(int argc, char** argv)
 try {
   int rounds = 7;
   long steps = 300;
+  std::string only;
   for (int i = 1; i + 1 < argc; i += 2) {
     if (std::strcmp(argv[i], "--rounds") == 0) rounds = std::atoi(argv[i + 1]);
     if (std::strcmp(argv[i], "--steps") == 0) steps = std::atol(argv[i + 1]);
+    if (std::strcmp(argv[i], "--case") == 0) only = argv[i + 1];
   }
   for (const auto& c : cases) {
+    if (!only.empty() && only + ".toml" != c.file) continue;
     const std::vector<std::string> schemes = {"css", "iss", "cibc"};
     std::vector<std::vector<Cost>> inline_runs(schemes.size()), process_runs(schemes.size());
     for (int r = 0; r < rounds; ++r)
