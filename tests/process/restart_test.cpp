@@ -255,7 +255,7 @@ TEST_CASE("a run that is checkpointed, swapped, stopped and restarted by command
   const auto stop = folder.command({"stop", test::piston_name});
   const auto stopped = run->wait();
   const auto stopped_at = test::last_step(folder / "out");
-  const auto rest = go_on(folder, {"--processes"});
+  const auto rest = go_on(folder, {"--inline"});
 
   CHECK(has(swapped.out, "; at work from step 21 on"));
   CHECK_MESSAGE(checkpoint.exit_code == 0, checkpoint.err);

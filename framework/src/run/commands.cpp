@@ -188,9 +188,9 @@ void Commands::apply_swap(const Pending& command)
 {
   const auto arguments = Json::parse(command.arguments);
   MULLION_REQUIRE(arguments.at("target") != "driver", Errc::config,
-                  "a driver cannot be swapped: what it connects and keeps is made for the whole run; 'mullion set' "
-                  "changes its parameters ({}), another scheme is another run",
-                  fmt::format("driver.NAME=VALUE; its scheme is {}", case_.scheme));
+                  "a driver cannot be swapped: what {} connects and keeps is made for the whole run; 'mullion set' "
+                  "changes its parameters (driver.NAME=VALUE), another scheme is another run",
+                  case_.scheme);
   const auto m = find_target(arguments.at("target"));
   const std::string wanted = arguments.at("module");
   const auto& now = case_.modules[m];
