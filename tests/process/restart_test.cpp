@@ -216,7 +216,8 @@ TEST_CASE("a checkpoint on a disk that is full is told, the run goes on, and the
   const auto result = run->wait();
 
   CHECK_MESSAGE(result.exit_code == 0, result.err);
-  CHECK(has(result.err, "No space left on device; the run goes on, older checkpoints are whole"));
+  CHECK(has(result.err, "No space left on device; make room on that disk or choose another folder with --out; the run "
+                        "goes on, older checkpoints are whole"));
   test::check_nothing_left(folder);
 }
 
