@@ -248,6 +248,35 @@ TEST_CASE("a source that reaches beyond the target is an error, or a warning if 
         doctest::Approx(0.995025).epsilon(1e-5));
 }
 
+TEST_CASE("a transfer that loses force is told once in a run, with both numbers and the place")
+{
+  const RunFolder folder;
+  const auto run = [&](const std::string& transfer) {
+    return folder.run(
+        {.file = MULLION_SOURCE_DIR "/configs/transfer_test.toml",
+         .sets = {"run.end_time=5", "fluid.mesh=line:80", "structure.mesh=line:70", "fluid.function=100; 1e4",
+                  "fluid.expected_motion=0.05; 0.1", "structure.function=0.05; 0.1",
+                  "structure.expected_traction=100; 1e4", "transfer.module=" + transfer}});
+  };
+  const auto complaint = [](const std::string& text) { return text.find("the target receives the force ("); };
+
+  const auto leaky = run("leaky_transfer"), sound = run("node_projection");
+
+  REQUIRE_MESSAGE(leaky.exit_code == 0, leaky.err);
+  const auto first = complaint(leaky.err);
+  REQUIRE_MESSAGE(first != std::string::npos, leaky.err);
+  CHECK(complaint(leaky.err.substr(first + 1)) == std::string::npos); // in none of the other steps
+  const auto line = leaky.err.substr(first, leaky.err.find('\n', first) - first);
+  // A tenth of node 3's share, which is 1/80 of the line's: 100 Pa m and 1e4 Pa m less 1/800 of them.
+  CHECK_MESSAGE(has(line, "(99.875, 9987.5, 0) N, the source gives (100, 10000, 0) N: relative defect 0.00125"), line);
+  // The tractions of its neighbours make a part of its load.
+  CHECK_MESSAGE(has(line, "the loads of 3 source nodes (node 2 at (0.025, 0) m; node 3 at (0.0375, 0) m; node 4 at "
+                          "(0.05, 0) m) do not arrive whole (said once; history.csv has every step)"),
+                line);
+  REQUIRE_MESSAGE(sound.exit_code == 0, sound.err);
+  CHECK(complaint(sound.err) == std::string::npos);
+}
+
 TEST_CASE("the results of a transfer test are those of a run: fields for ParaView, a history, a record")
 {
   const RunFolder folder;

@@ -1,6 +1,7 @@
 // Processes of a run that are killed or stopped from outside, at random moments: the run ends with a message that
 // names who it was, all others end within a second, and what was written is what an undisturbed run writes.
 #include "support/faulty_piston.hpp"
+#include "support/replaced_hosts.hpp"
 
 #include <doctest/doctest.h>
 
@@ -132,17 +133,10 @@ TEST_CASE("with on_failure = respawn a killed host is replaced, and the bytes ar
   test::run_whole(folder);
   const auto run = folder.start(test::long_piston({"run.on_failure=respawn"}));
 
-  for (int module = 0; module < 4; ++module) {
-    REQUIRE(folder.wait_for_step(test::piston_name, folder.steps_of(test::piston_name) + 10));
+  test::replace_each_host(folder, [&](pid_t host) {
     std::this_thread::sleep_for(std::chrono::microseconds(std::uniform_int_distribution(0, 5'000)(random)));
-    const auto host = test::find_host(folder, module);
     ::kill(host, SIGKILL);
-    CHECK(test::wait_until([&] {
-      const auto next = test::find_host(folder, module);
-      return next != 0 && next != host;
-    }));
-  }
-  REQUIRE(folder.wait_for_step(test::piston_name, folder.steps_of(test::piston_name) + 10));
+  });
   run->send(SIGINT);
   const auto result = run->wait();
 

@@ -2,6 +2,7 @@
 // that never stopped; what fails twice ends with the last good state on disk.
 #include "support/faulty_piston.hpp"
 #include "support/history.hpp"
+#include "support/replaced_hosts.hpp"
 
 #include "io/atomic_file.hpp"
 #include "io/checkpoint.hpp"
@@ -14,6 +15,8 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
+#include <memory>
 #include <random>
 #include <string>
 #include <thread>
@@ -154,6 +157,121 @@ TEST_CASE("a checkpoint that cannot be written is told, the run goes on, and the
   test::check_nothing_left(folder);
 }
 
+TEST_CASE("a checkpoint on a disk that is full is told, the run goes on, and the one before stays good")
+{
+  // A small file system in memory, in a mount namespace of its own: it goes with the run.
+  const test::RunFolder folder;
+  fs::create_directory(folder / "disk");
+  std::vector<std::string> before{"unshare", "-m"};
+  const auto try_it = [&] {
+    auto command = before;
+    command.insert(command.end(), {"sh", "-c", "mount -t tmpfs -o size=64k none \"$0\"", (folder / "disk").string()});
+    try {
+      return test::run_process(command).exit_code == 0;
+    } catch (const std::exception&) { // there is no such program
+      return false;
+    }
+  };
+  if (!try_it()) {
+    before = {"unshare", "-rm"};
+    if (!try_it()) {
+      MESSAGE("skipped: 1 test case; this machine lets nobody mount a file system in a namespace of his own, so the "
+              "limit on file sizes alone stands for a full disk");
+      return;
+    }
+  }
+  before.insert(before.end(),
+                {"sh", "-c", "mount -t tmpfs -o size=8m none \"$0\" && exec \"$@\"", (folder / "disk").string()});
+  const auto the_case = with_checkpoints({"output.history=false", "output.every=0", "run.end_time=1000"});
+  auto command = before;
+  command.insert(command.end(),
+                 {MULLION_BUILD_DIR "/bin/mullion", "run", the_case.file, "--out", (folder / "disk/out").string()});
+  for (const auto& set : the_case.sets) command.insert(command.end(), {"--set", set});
+  const auto run = std::make_unique<test::Process>(
+      command, test::ProcessOptions{.environment = {{"MULLION_RUNTIME_DIR", folder.runtime().string()},
+                                                    {"MULLION_PLUGIN_PATH", MULLION_TEST_PLUGIN_DIR}},
+                                    .folder = folder.path().string()});
+  const auto disk = fs::path("/proc") / std::to_string(run->pid()) / "root" / (folder / "disk").relative_path();
+  const auto newest = [&] {
+    const auto files = io::list_checkpoints(disk / "out");
+    return files.empty() ? std::int64_t{-1} : files.front().step;
+  };
+  REQUIRE(test::wait_until([&] { return newest() > 0; }));
+
+  // More than once: a checkpoint that was under way makes room, for when it is there an older one is removed.
+  REQUIRE(test::wait_until([&] {
+    std::ofstream ballast(disk / "ballast", std::ios::binary | std::ios::app);
+    const std::string page(4096, '.');
+    while (ballast.write(page.data(), 4096).flush()) continue;
+    return has(run->err(), "no checkpoint of step ");
+  }));
+  const auto kept = io::newest_good_checkpoint(disk / "out");
+  const auto step = folder.steps_of(test::piston_name);
+  CHECK(folder.wait_for_step(test::piston_name, step + 300)); // it goes on
+  REQUIRE(kept);
+  fs::remove(disk / "ballast");
+  CHECK(test::wait_until([&] { return newest() > kept->step + 250; })); // and writes them again
+  CHECK(io::newest_good_checkpoint(disk / "out"));
+  run->send(SIGINT);
+  const auto result = run->wait();
+
+  CHECK_MESSAGE(result.exit_code == 0, result.err);
+  CHECK(has(result.err, "No space left on device; make room on that disk or choose another folder with --out; the run "
+                        "goes on, older checkpoints are whole"));
+  test::check_nothing_left(folder);
+}
+
+TEST_CASE("a run that is checkpointed, swapped, stopped and restarted by commands ends as one that only was swapped")
+{
+  // Inline the swap is done between two steps: the one that takes two seconds, in which it is asked for, and the next.
+  const test::RunFolder folder;
+  const fs::path built = MULLION_TEST_PLUGIN_DIR "/faulty_structure.so";
+  const auto other_build = folder / "faulty_structure_again.so";
+  fs::copy_file(built, other_build);
+  std::ofstream(other_build, std::ios::app) << "another build"; // the same code, to whoever does not compare
+  const auto start = [&](const std::string& out) {
+    auto run = test::long_piston({"run.end_time=1.8283482006601323", "output.every=15000", // 300,000 steps
+                                  "output.history_every=10", "structure.fault=slow", "structure.at_step=20",
+                                  "structure.duration=2.0"},
+                                 {"--inline"});
+    run.out = out;
+    return folder.start(run);
+  };
+  const auto swap = [&] {
+    REQUIRE(folder.wait_for_step(test::piston_name, 19));
+    return folder.command(
+        {"swap", test::piston_name, "structure=" + other_build.string(), "--set", "damping=1e4", "--set", "mass=500"});
+  };
+  const auto whole = start("whole");
+  const auto undisturbed_swap = swap();
+  CHECK_MESSAGE(undisturbed_swap.exit_code == 0, undisturbed_swap.err);
+  CHECK(has(undisturbed_swap.out, "; at work from step 21 on"));
+  REQUIRE(whole->wait().exit_code == 0);
+  REQUIRE(test::last_step(folder / "whole") == 300'000);
+
+  const auto run = start("out");
+  REQUIRE(folder.wait_for_step(test::piston_name, 10));
+  const auto swapped = swap();
+  const auto checkpoint = folder.command({"checkpoint", test::piston_name});
+  const auto stop = folder.command({"stop", test::piston_name});
+  const auto stopped = run->wait();
+  const auto stopped_at = test::last_step(folder / "out");
+  const auto rest = go_on(folder, {"--inline"});
+
+  CHECK(has(swapped.out, "; at work from step 21 on"));
+  CHECK_MESSAGE(checkpoint.exit_code == 0, checkpoint.err);
+  CHECK(has(checkpoint.out, "checkpoint of step "));
+  CHECK(stop.exit_code == 0);
+  CHECK_MESSAGE(stopped.exit_code == 0, stopped.err);
+  CHECK(stopped_at >= 21);
+  CHECK(stopped_at < 300'000);
+  CHECK_MESSAGE(rest.exit_code == 0, rest.err);
+  CHECK(test::difference(folder / "out", folder / "whole") == "");
+  CHECK_MESSAGE(has(rest.err, "was made with other plug-ins (structure: another build of faulty_structure 0.1.0); the "
+                              "results may differ from those of a run that never stopped"),
+                rest.err);
+}
+
 TEST_CASE("what fails twice in the same step ends the run with a post-mortem and the last good state on disk")
 {
   const test::RunFolder folder;
@@ -258,16 +376,7 @@ TEST_CASE("a host that hangs past its deadline is replaced, and the bytes are th
   const test::RunFolder folder;
   test::run_whole(folder);
   const auto run = folder.start(test::long_piston({"run.on_failure=respawn", "run.call_deadline=0.5"}));
-  for (int module = 0; module < 4; ++module) {
-    REQUIRE(folder.wait_for_step(test::piston_name, folder.steps_of(test::piston_name) + 10));
-    const auto host = test::find_host(folder, module);
-    ::kill(host, SIGSTOP);
-    CHECK(test::wait_until([&] {
-      const auto next = test::find_host(folder, module);
-      return next != 0 && next != host;
-    }));
-  }
-  REQUIRE(folder.wait_for_step(test::piston_name, folder.steps_of(test::piston_name) + 10));
+  test::replace_each_host(folder, [](pid_t host) { ::kill(host, SIGSTOP); });
   run->send(SIGINT);
   const auto result = run->wait();
 

@@ -143,8 +143,21 @@ TEST_CASE("a candidate that does not fit, or cannot attach, is refused with the 
         {"fluid=" + (folder / "text.so").string(), "text.so: file too short"},
         {"structure=faulty_structure", "has no parameter 'mas'; did you mean 'mass'?", {"mas=3"}},
         {"structure=faulty_structure", "mass = -3 is out of range; expected a number > 0 [kg]", {"mass=-3"}},
-        {"structure=faulty_structure", "does not declare 'origin' as changeable", {"origin=2.0"}},
-        {"structure=faulty_structure", "did not want to go on", {"fault=throw", "at=attach"}},
+        {"structure=faulty_structure",
+         "'structure' (faulty_structure): with origin = 2.0 the window structure/wet would have another size, mesh or "
+         "fixed field; a live run keeps these as they are",
+         {"origin=2.0"}},
+        {"structure=faulty_structure",
+         "'structure' (faulty_structure): with first_displacement = 1e-3 the first values of "
+         "structure/wet.displacement would be others; a live run is past these, and what only they depend on would "
+         "change nothing",
+         {"mass=600", "first_displacement=1e-3"}},
+        {"structure=faulty_structure",
+         "window structure/wet keeps 1 committed level; level -2 was asked for (the driver of a run says how many each "
+         "window keeps, and no module can have more)",
+         {"fault=look_back", "at=attach"}},
+        {"driver=strong", "a driver cannot be swapped: what css connects and keeps is made for the whole run; 'mullion "
+                          "set' changes its parameters (driver.NAME=VALUE), another scheme is another run"},
     };
   };
   const test::RunFolder folder;
@@ -186,6 +199,111 @@ TEST_CASE("a candidate in a process may die or write into the windows while it a
   check_undisturbed(folder, *run);
 }
 
+TEST_CASE("a candidate in a process that attaches slowly does not hold the run, and what it derived is of the exchange")
+{
+  const test::RunFolder folder;
+  const auto run = folder.start(longer_piston({"--processes"}));
+  REQUIRE(folder.wait_for_step(test::piston_name, 5));
+  // The second derives from what is committed when it attaches, and its first step looks whether it still is.
+  for (const char* fault : {"slow", "derive"}) {
+    CAPTURE(fault);
+    const auto swap =
+        folder.start_command({"swap", test::piston_name, "structure=faulty_structure", "--set",
+                              "fault=" + std::string(fault), "--set", "at=attach", "--set", "duration=2.0"});
+    REQUIRE(test::wait_until([&] { return folder.processes().size() == 7; })); // the candidate's
+
+    const auto then = folder.steps_of(test::piston_name);
+    CHECK(folder.wait_for_step(test::piston_name, then + 20));
+    CHECK(swap->is_running());
+    const auto result = swap->wait();
+
+    CHECK_MESSAGE(result.exit_code == 0, result.err);
+    CHECK(has(result.out, "; at work from step "));
+    CHECK(folder.processes().size() == 6);
+  }
+  check_undisturbed(folder, *run);
+}
+
+TEST_CASE("while a candidate attaches a checkpoint is written, other changes wait, and the end of the run ends it")
+{
+  const test::RunFolder folder;
+  const auto run = folder.start(longer_piston({"--processes"}));
+  REQUIRE(folder.wait_for_step(test::piston_name, 5));
+  const auto swap = folder.start_command(
+      {"swap", test::piston_name, "structure=faulty_structure", "--set", "fault=hang", "--set", "at=attach"});
+  REQUIRE(test::wait_until([&] { return folder.processes().size() == 7; }));
+
+  const auto set = folder.start_command({"set", test::piston_name, "structure.mass=600"});
+  const auto checkpoint = folder.command({"checkpoint", test::piston_name});
+
+  CHECK_MESSAGE(checkpoint.exit_code == 0, checkpoint.err);
+  CHECK(swap->is_running());
+  CHECK(set->is_running());
+  check_undisturbed(folder, *run);
+  const auto swapped = swap->wait(), changed = set->wait();
+  CHECK(swapped.exit_code == 1);
+  CHECK_MESSAGE(has(swapped.err, "the run ended before the candidate had attached"), swapped.err);
+  CHECK(changed.exit_code == 1);
+  CHECK_MESSAGE(has(changed.err, "the run ended before it came to that"), changed.err);
+}
+
+TEST_CASE("a candidate that never attaches is killed at the deadline, and one that is killed is refused")
+{
+  const test::RunFolder folder;
+  const auto run = folder.start(longer_piston({"--processes"}, {"run.start_deadline=4"}));
+  REQUIRE(folder.wait_for_step(test::piston_name, 5));
+  const auto before = folder.processes();
+  const auto hang = [&] {
+    return folder.start_command(
+        {"swap", test::piston_name, "structure=faulty_structure", "--set", "fault=hang", "--set", "at=attach"});
+  };
+
+  const auto late = hang()->wait();
+  const auto killed = hang();
+  pid_t candidate = 0;
+  REQUIRE(test::wait_until([&] {
+    for (const auto& process : folder.processes())
+      if (process.is_host() &&
+          std::none_of(before.begin(), before.end(), [&](const auto& other) { return other.pid == process.pid; }))
+        candidate = process.pid;
+    return candidate != 0;
+  }));
+  ::kill(candidate, SIGKILL);
+  const auto dead = killed->wait();
+
+  CHECK(late.exit_code == 2);
+  CHECK_MESSAGE(has(late.err, "did not attach within its deadline of 4 s and was killed"), late.err);
+  CHECK(dead.exit_code == 2);
+  CHECK_MESSAGE(has(dead.err, "was killed by signal 9 (SIGKILL)"), dead.err);
+  CHECK(folder.processes().size() == 6);
+  check_undisturbed(folder, *run);
+}
+
+TEST_CASE(
+    "a swap changes what is not declared changeable if the windows and first states stay, inline and in processes")
+{
+  const test::RunFolder folder;
+  for (const char* where : {"--inline", "--processes"}) {
+    CAPTURE(where);
+    fs::remove_all(folder / "out");
+    const auto run = folder.start(longer_piston({where}));
+    REQUIRE(folder.wait_for_step(test::piston_name, 5));
+
+    const auto set = folder.command({"set", test::piston_name, "structure.damping=1e4"});
+    const auto swap = folder.command({"swap", test::piston_name, "structure=faulty_structure", "--set", "damping=1e4"});
+    REQUIRE(folder.wait_for_step(test::piston_name, folder.steps_of(test::piston_name) + 1000));
+    run->send(SIGINT);
+    const auto result = run->wait();
+
+    CHECK(set.exit_code == 2); // that stays with what is declared
+    CHECK_MESSAGE(swap.exit_code == 0, swap.err);
+    CHECK(has(swap.out, ", damping = 1e4; at work from step "));
+    CHECK_MESSAGE(result.exit_code == 0, result.err);
+    CHECK(test::difference_of_part(folder / "out", whole()) != ""); // it is at work
+    CHECK(folder.is_deserted_within(1s));                           // no process that defined is left
+  }
+}
+
 TEST_CASE("when a candidate fails in its first step, the one before it takes over and the bytes are the same")
 {
   const test::RunFolder folder;
@@ -197,6 +315,7 @@ TEST_CASE("when a candidate fails in its first step, the one before it takes ove
       {"throw", "did not want to go on", true},
       {"throw_foreign", "threw something that is no std::exception", true},
       {"not_a_number", "structure/wet.velocity[0, 0] = ", true},
+      {"look_back", "window structure/wet keeps 1 committed level; level -2 was asked for", true},
       {"segfault", "was killed by signal 11 (SIGSEGV)", false},
       {"exit", "exited with code 3", false},
       {"hang", "did not answer within its deadline of 0.5 s", false},

@@ -15,14 +15,15 @@ int run_swap(const Arguments& arguments)
 {
   CommandLine command{
       "mullion swap RUN KIND=MODULE [--set KEY=VALUE]…",
-      "Swap a module in a live run at its next step boundary. KIND is a kind or an instance, MODULE the\n"
-      "name of a plug-in, or the path of a library (with a '/'). Waits until the first step with it is\n"
-      "committed; if that step fails, the one before takes over and does it again.",
+      "Swap a module in a live run at a step boundary, in a process at the first after it has attached. KIND is\n"
+      "a kind or an instance, MODULE the name of a plug-in, or the path of a library (with a '/'). Waits until\n"
+      "the first step with it is committed; if that step fails, the one before takes over and does it again.",
       {},
       "run",
       2};
-  command.options.add_options()("set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
-                                "a parameter of the module; may be repeated");
+  command.options.add_options()(
+      "set", po::value<std::vector<std::string>>()->value_name("KEY=VALUE"),
+      "a parameter of the module that leaves its windows and first states as they are; may be repeated");
   const auto given = parse_arguments(command, arguments);
   if (!given) return success;
   const auto words = given->count("run") == 0 ? Arguments{} : (*given)["run"].as<Arguments>();

@@ -92,19 +92,35 @@ public:
       shm::wait_for(request.word, reply_.asleep, true, is_new, [] { return false; });
       seen = request.word.load(std::memory_order_acquire);
       if (request.operation == shm::Operation::quit) return;
-      answer(request);
+      if (request.operation == shm::Operation::attach_beside) {
+        attach_beside(seen);
+        continue;
+      }
+      answer(request.operation, request);
       std::fflush(stdout);
       shm::publish(reply_.word, seen, control_.orchestrator_asleep);
     }
   }
 
 private:
-  void answer(const shm::Request& request)
+  /// The first answer frees the request slot, in which the carrier at work is called from then on: nothing is read from
+  /// it any more.
+  void attach_beside(std::uint32_t number)
+  {
+    windows_.forbid(module_);
+    shm::publish(reply_.word, number, control_.orchestrator_asleep);
+    answer(shm::Operation::attach, record_.request);
+    reply_.results[0] = runtime_.has_attached_to_levels() ? 1.0 : 0.0;
+    std::fflush(stdout);
+    shm::publish(reply_.word, number ^ shm::attached_beside, control_.orchestrator_asleep);
+  }
+
+  void answer(shm::Operation operation, const shm::Request& request)
   {
     const auto begin = std::chrono::steady_clock::now();
     reply_.status = MULLION_OK;
     try {
-      dispatch(request);
+      dispatch(operation, request);
     } catch (const Error& error) {
       fail(static_cast<std::int32_t>(error.code()), error.what());
     } catch (const std::exception& error) {
@@ -114,10 +130,10 @@ private:
         std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begin).count());
   }
 
-  void dispatch(const shm::Request& request)
+  void dispatch(shm::Operation operation, const shm::Request& request)
   {
     using shm::Operation;
-    switch (request.operation) {
+    switch (operation) {
     case Operation::create: return runtime_.create();
     case Operation::define:
       defined_ = runtime_.define(request.step);
@@ -140,9 +156,10 @@ private:
     case Operation::park: return windows_.forbid(module_);
     case Operation::resume: return windows_.allow(module_);
     case Operation::none:
+    case Operation::attach_beside:
     case Operation::quit: break;
     }
-    throw Error(Errc::internal, fmt::format("unknown request {}", static_cast<int>(request.operation)));
+    throw Error(Errc::internal, fmt::format("unknown request {}", static_cast<int>(operation)));
   }
 
   void fail(std::int32_t status, const std::string& text)

@@ -1,6 +1,6 @@
 #include "io/checkpoint_files.hpp"
 
-#include "io/checkpoint.hpp"
+#include "io/checkpoint_trial.hpp"
 
 #include <mullion/sdk/error.hpp>
 
@@ -40,7 +40,7 @@ std::optional<CheckpointFile> newest_good_checkpoint(const fs::path& folder, std
 {
   for (const auto& file : list_checkpoints(folder)) {
     try {
-      (void)read_checkpoint(file.path);
+      try_checkpoint(file.path);
       return file;
     } catch (const Error& error) {
       if (problems != nullptr) problems->emplace_back(error.what());

@@ -21,7 +21,7 @@ struct CheckpointFile {
 /// The checkpoints in a folder by their names, newest (latest step) first; none if there is no such folder.
 [[nodiscard]] std::vector<CheckpointFile> list_checkpoints(const std::filesystem::path& folder);
 
-/// The newest checkpoint in a folder whose trailer and contents are sound.
+/// The newest checkpoint in a folder whose trailer and contents are sound; each is tried in a child process.
 /// @param problems  if given: why each newer one is not
 [[nodiscard]] std::optional<CheckpointFile> newest_good_checkpoint(const std::filesystem::path& folder,
                                                                    std::vector<std::string>* problems = nullptr);

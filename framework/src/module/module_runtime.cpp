@@ -86,6 +86,7 @@ void ModuleRuntime::attach()
   const PhaseGuard guard(*this, Phase::attaching);
   epoch_ = windows_.control().epoch.load(std::memory_order_acquire);
   handles_.clear();
+  has_attached_to_levels_ = false;
   list_windows();
   error_ = "failed without saying why";
   require(entries_->attach(instance_));

@@ -38,6 +38,8 @@ public:
   /// The windows that the module made, all levels equal. The caller keeps the objects.
   std::vector<Defined> define(const mullion_step& initial);
   void attach();
+  /// Did the last attach look at data of a level? What it derived from them holds for that commit only.
+  [[nodiscard]] bool has_attached_to_levels() const { return has_attached_to_levels_; }
   void start(const mullion_step& initial);
   void seal();
   /// A step or a function, as the request says.
@@ -78,6 +80,7 @@ private:
   void* instance_ = nullptr;
   Phase phase_ = Phase::idle;
   std::uint64_t epoch_ = 0;
+  bool has_attached_to_levels_ = false;
   std::string error_;
   std::vector<Defined> defined_;
   std::vector<std::uint32_t> own_windows_;                   ///< ids, known from attach on

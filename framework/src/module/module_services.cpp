@@ -205,6 +205,8 @@ void ModuleRuntime::view(std::uint32_t handle, std::int32_t level, mullion_array
   // Attach sees what is committed: on a fresh start the first state, later wherever the run is.
   if (phase_ == Phase::attaching && level == 0) level = 1;
   const auto at = windows_.locate(window, index, level, epoch_);
+  if (phase_ == Phase::attaching && static_cast<Storage>(at.field->storage) == Storage::level)
+    has_attached_to_levels_ = true;
   const bool is_writable = level == 0 && static_cast<Storage>(at.field->storage) == Storage::level;
   *out = {at.data, at.field->components, at.field->entities, at.field->scalar, is_writable ? 1u : 0u};
 }

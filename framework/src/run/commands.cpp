@@ -35,8 +35,9 @@ std::pair<std::string, std::string> split_assignment(const std::string& text)
 
 /// Assign one parameter among `parameters`.
 /// @param label  whose they are: instance and plug-in
+/// @return has it another value now, and is not declared changeable?
 /// @throws Error Errc::config: unknown, no legal value, or not changeable though it must be
-void assign(std::vector<ParameterValue>& parameters, std::span<const mullion_parameter_spec> specs,
+bool assign(std::vector<ParameterValue>& parameters, std::span<const mullion_parameter_spec> specs,
             const std::string& key, const std::string& value, const std::string& label, bool must_be_changeable)
 {
   std::vector<std::string> names, changeable;
@@ -53,13 +54,15 @@ void assign(std::vector<ParameterValue>& parameters, std::span<const mullion_par
   auto assigned = *parameter;
   const auto wrong = config::take_value(config::parse_value(value, {}), *spec, assigned);
   MULLION_REQUIRE(wrong.empty(), Errc::config, "{} {} {}", label, key, wrong);
-  MULLION_REQUIRE(!must_be_changeable || spec->is_changeable != 0 || assigned.value == parameter->value, Errc::config,
+  const bool is_bold = spec->is_changeable == 0 && assigned.value != parameter->value;
+  MULLION_REQUIRE(!must_be_changeable || !is_bold, Errc::config,
                   "{} does not declare '{}' as changeable: it may shape windows or first states, which a live run "
                   "keeps; {}",
                   label, key,
                   changeable.empty() ? "none of its parameters is"
                                      : fmt::format("changeable are {}", fmt::join(changeable, ", ")));
   *parameter = assigned;
+  return is_bold;
 }
 
 } // namespace
@@ -134,6 +137,8 @@ void Commands::apply_pending(StepClock& clock)
         has_pending_.store(false, std::memory_order_relaxed);
         return;
       }
+      // One change at a time: while a candidate attaches, the next one waits. A checkpoint changes nothing.
+      if (session_.has_candidate() && pending_.front().what != "checkpoint") return;
       command = std::move(pending_.front());
       pending_.pop_front();
     }
@@ -145,6 +150,16 @@ void Commands::apply_pending(StepClock& clock)
     } catch (const std::exception& error) { // JSON that is none
       command.reply(reply_refused(Errc::config, error.what()));
     }
+  }
+}
+
+void Commands::exchange_candidate()
+{
+  try {
+    session_.exchange_candidate();
+  } catch (const Error& error) {
+    log::warning("run", "{} refused: {}", on_trial_.what, error.what());
+    std::exchange(on_trial_, {}).reply(reply_refused(error.code(), error.what()));
   }
 }
 
@@ -172,6 +187,10 @@ std::uint32_t Commands::find_target(const std::string& name) const
 void Commands::apply_swap(const Pending& command)
 {
   const auto arguments = Json::parse(command.arguments);
+  MULLION_REQUIRE(arguments.at("target") != "driver", Errc::config,
+                  "a driver cannot be swapped: what {} connects and keeps is made for the whole run; 'mullion set' "
+                  "changes its parameters (driver.NAME=VALUE), another scheme is another run",
+                  case_.scheme);
   const auto m = find_target(arguments.at("target"));
   const std::string wanted = arguments.at("module");
   const auto& now = case_.modules[m];
@@ -201,10 +220,12 @@ void Commands::apply_swap(const Pending& command)
     if (is_kept && known != now.parameters.end()) parameter = *known;
   }
   std::string changes;
+  std::vector<std::string> bold;
   for (const std::string text : arguments.at("sets")) {
     auto [key, value] = split_assignment(text);
     if (key.starts_with(now.instance + ".")) key.erase(0, now.instance.size() + 1);
-    assign(candidate.parameters, library.parameters(), key, value, label, is_same);
+    if (assign(candidate.parameters, library.parameters(), key, value, label, false))
+      bold.push_back(fmt::format("{} = {}", key, value));
     changes += fmt::format(", {} = {}", key, value);
   }
   for (std::size_t p = 0; p < candidate.parameters.size(); ++p)
@@ -219,7 +240,10 @@ void Commands::apply_swap(const Pending& command)
                candidate,
                {},
                command.reply};
-  session_.try_module(m, std::move(candidate), library.module());
+  if (is_same && !bold.empty()) // another plug-in made no first state in this run
+    session_.require_same_definition(m, candidate, library.module(), fmt::format("{}", fmt::join(bold, ", ")));
+  if (candidate.is_process) session_.begin_candidate(m, std::move(candidate), library.module());
+  else session_.try_module(m, std::move(candidate), library.module());
 }
 
 void Commands::apply_set(const Pending& command, StepClock& clock)
@@ -329,8 +353,12 @@ bool Commands::take_back(const TimeStep& step, const std::string& failure)
 
 void Commands::finish()
 {
-  if (session_.has_trial())
+  if (session_.has_candidate()) {
+    session_.drop_candidate();
+    on_trial_.reply(reply_refused(Errc::process, "the run ended before the candidate had attached"));
+  } else if (session_.has_trial()) {
     on_trial_.reply(reply_refused(Errc::process, "the run failed before the outcome was known"));
+  }
   const std::lock_guard lock(mutex_);
   is_over_ = true;
   for (const auto& command : std::exchange(pending_, {}))

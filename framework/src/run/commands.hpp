@@ -1,6 +1,7 @@
 // What a second terminal asks of a live run. Questions are answered by the supervisor's thread at once; what changes
 // the run waits in a queue for the next step boundary, where the main thread does it, one thing at a time. The reply
 // goes out when the outcome is known: for a swap, when the first step after it is committed, or was done again without.
+// A candidate in a process attaches beside the run meanwhile; the boundary after that exchanges it.
 //
 // A line is a word, and behind a blank its arguments as JSON; a reply is JSON: {"ok": "what was done", "step": n}, or
 // {"error": "why not", "code": n} with the number of an Errc.
@@ -43,6 +44,7 @@ public:
   /// Between two steps: do what is asked for. The clock changes with run.end_time.
   void at_boundary(StepClock& clock)
   {
+    if (session_.has_candidate() && session_.is_candidate_due()) exchange_candidate();
     if (has_pending_.load(std::memory_order_relaxed)) apply_pending(clock);
   }
   /// The step failed. @return was there a candidate on trial, which is taken back: then the step can be done again
@@ -69,6 +71,7 @@ private:
   };
 
   void apply_pending(StepClock& clock);
+  void exchange_candidate();
   void apply(const Pending& command, StepClock& clock);
   void apply_swap(const Pending& command);
   void apply_set(const Pending& command, StepClock& clock);

@@ -4,6 +4,7 @@
 #include "config/toml_reader.hpp"
 #include "config/toml_writer.hpp"
 #include "io/checkpoint_files.hpp"
+#include "io/checkpoint_trial.hpp"
 #include "log/console.hpp"
 #include "run/checkpoint.hpp"
 
@@ -36,9 +37,11 @@ fs::path newest_of(const fs::path& folder)
                           folder.string()));
 }
 
-Restart read_restart(const fs::path& file)
+/// @param is_tried  newest_of() has read it in a child process
+Restart read_restart(const fs::path& file, bool is_tried)
 {
   try {
+    if (!is_tried) io::try_checkpoint(file);
     return {file, io::read_checkpoint(file), {}};
   } catch (const Error& error) {
     const auto folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
@@ -158,8 +161,9 @@ Begin begin_of(const RunOptions& options)
   } else {
     begin.out = options.out;
   }
-  const auto file = options.restart == "latest" ? newest_of(begin.out) : fs::path(options.restart);
-  begin.restart = read_restart(file);
+  const bool is_latest = options.restart == "latest";
+  const auto file = is_latest ? newest_of(begin.out) : fs::path(options.restart);
+  begin.restart = read_restart(file, is_latest);
   if (!has_case) {
     begin.the_case = read_case_text(begin.restart->checkpoint.case_text, file.string(), options.case_options);
     if (!begin.the_case.diagnostics.empty()) return begin;

@@ -77,6 +77,20 @@ public:
   /// parked, and the candidate is on trial until keep() or take_back().
   /// @throws Error Errc::plugin: it does not fit, or could not attach; nothing has changed
   void try_module(std::uint32_t module, ModuleCase candidate, const mullion_module& entries);
+  /// The same for a candidate in a process, in two parts: it is started and attaches beside the run, which goes on with
+  /// the carrier at work; when it is due, between two steps, it is exchanged and on trial. (swap_beside.cpp)
+  /// @throws Error Errc::plugin: it does not fit, or could not attach; nothing has changed
+  void begin_candidate(std::uint32_t module, ModuleCase candidate, const mullion_module& entries);
+  [[nodiscard]] bool has_candidate() const { return candidate_.has_value(); }
+  [[nodiscard]] bool is_candidate_due() const; ///< it has attached, or never will
+  void exchange_candidate();
+  void drop_candidate();
+  /// May a module of this live run get these values of parameters that are not declared changeable? It may if what its
+  /// define makes stays the same. (swap_definition.cpp)
+  /// @param changes  for messages: "origin = 2"
+  /// @throws Error Errc::plugin: its windows would have another size, mesh or first state; nothing has changed
+  void require_same_definition(std::uint32_t module, const ModuleCase& candidate, const mullion_module& entries,
+                               const std::string& changes);
   /// The same for the driver with other parameters. @throws Error Errc::plugin: they would change what is connected
   void try_driver(std::vector<ParameterValue> parameters);
   [[nodiscard]] bool has_trial() const { return trial_.has_value(); }
@@ -169,12 +183,48 @@ private:
     Carrier parked;
   };
 
+  /// One that attaches beside the run. The carrier's config is the one here.
+  struct Candidate {
+    std::uint32_t module = 0;
+    ModuleCase config;
+    Carrier carrier;
+    std::uint32_t number = 0; ///< of the request in which it attaches
+    Clock::time_point begun;
+    std::chrono::nanoseconds paused{0}; ///< all pauses until then
+  };
+
+  /// Another carrier in the place of the one at work, as long as this lives: for calls between two steps. What is
+  /// there at the end is let go of.
+  class StandIn {
+  public:
+    StandIn(Session& session, std::uint32_t module, const ModuleCase& config, const mullion_module& entries);
+    ~StandIn();
+    StandIn(const StandIn&) = delete;
+    StandIn& operator=(const StandIn&) = delete;
+
+  private:
+    Session& session_;
+    std::uint32_t module_;
+    Carrier at_work_;
+  };
+
   // swap.cpp
+  void require_fit(std::uint32_t module, const ModuleCase& candidate, const mullion_module& entries);
+  /// @param prepare  makes the candidate, which has the place of the carrier at work by then, ready to get the windows
+  void put_on_trial(std::uint32_t module, ModuleCase config, Carrier candidate,
+                    const std::function<void(const TimeStep& at)>& prepare);
+  void show_host(std::uint32_t module); ///< in the control object
   void hand_over(std::uint32_t module, const TimeStep& at);
   void restore_parked();
   [[nodiscard]] TimeStep now() const; ///< for calls between two steps
   void attach_driver();
   void arrange_timings(Module& module);
+  // swap_beside.cpp
+  void attach_beside(std::uint32_t module);
+  [[nodiscard]] bool is_candidate_late() const;
+  // swap_definition.cpp
+  struct Definition;
+  [[nodiscard]] Definition define_apart(std::uint32_t module, const ModuleCase& config, const mullion_module& entries);
 
   // setup.cpp
   void describe_modules();
@@ -238,7 +288,8 @@ private:
   const std::vector<ParameterValue>* driver_parameters_;
   std::unique_ptr<Driver> driver_;
   std::optional<Trial> trial_;
-  mutable std::mutex timings_mutex_; ///< held where the list of a module's timings changes, or is read elsewhere
+  std::optional<Candidate> candidate_; ///< not while one is on trial
+  mutable std::mutex timings_mutex_;   ///< held where the list of a module's timings changes, or is read elsewhere
   std::uint32_t state_window_ = shm::no_window;
   std::optional<Ledger> ledger_;
   std::vector<std::uint32_t> write_order_;

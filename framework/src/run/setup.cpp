@@ -36,6 +36,7 @@ Session::Session(const Case& the_case, plugin::Catalogue& catalogue, shm::Contro
 Session::~Session()
 {
   if (trial_ && trial_->parked.host != nullptr) supervisor_.kill(*trial_->parked.host);
+  if (candidate_) drop_candidate();
   driver_.reset();
   for (auto& module : modules_)
     if (module.host != nullptr) supervisor_.kill(*module.host);

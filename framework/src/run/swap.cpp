@@ -1,6 +1,7 @@
 // Other code at work in a live run, between two steps: another carrier of a module (other parameters, another build,
 // another plug-in) or the driver with other parameters. State lives in windows, so the candidate attaches to what is
-// there and goes on; the one before it stays parked until the candidate's first step is committed.
+// there and goes on; the one before it stays parked until the candidate's first step is committed. How one in a process
+// attaches beside the moving run is in swap_beside.cpp.
 //
 // Who writes: of a module in a process, one carrier at a time has its windows mapped read-write; the candidate is
 // parked while it attaches, the one before it afterwards. (Inline, both live in this process.) When a candidate dies,
@@ -37,31 +38,45 @@ std::string connected(const Wiring& wiring)
 
 } // namespace
 
-void Session::try_module(std::uint32_t m, ModuleCase candidate, const mullion_module& entries)
+void Session::require_fit(std::uint32_t m, const ModuleCase& candidate, const mullion_module& entries)
 {
-  MULLION_ASSERT(!has_trial() && n_in_flight_ == 0, "one trial at a time, between steps");
   const auto wrong = misfit(entries, m, windows_);
   MULLION_REQUIRE(wrong.empty(), Errc::plugin, "{} does not fit the windows of '{}': {}", candidate.plugin,
                   candidate.instance, wrong);
+}
 
-  const auto at = now();
-  auto& module = modules_[m];
-  trial_.emplace();
-  trial_->module = m;
-  trial_->config = std::move(candidate);
-  trial_->parked = std::exchange(static_cast<Carrier&>(module), Carrier{});
-  module.config = &trial_->config;
-  module.entries = &entries;
-  auto old_driver = std::move(driver_);
-  is_running_ = false; // the start-up deadline holds
-  try {
+void Session::try_module(std::uint32_t m, ModuleCase candidate, const mullion_module& entries)
+{
+  MULLION_ASSERT(!has_trial() && !has_candidate() && n_in_flight_ == 0, "one trial at a time, between steps");
+  require_fit(m, candidate, entries);
+  Carrier carrier;
+  carrier.entries = &entries;
+  put_on_trial(m, std::move(candidate), std::move(carrier), [&](const TimeStep& at) {
+    auto& module = modules_[m];
     module.function_windows = find_function_windows(module.config->instance, entries);
-    arrange_timings(module);
-    describe(m);
     spawn(m);
     call(m, Operation::create, at);
     if (module.host != nullptr) call(m, Operation::park, at);
     call(m, Operation::attach, at);
+  });
+}
+
+void Session::put_on_trial(std::uint32_t m, ModuleCase config, Carrier candidate,
+                           const std::function<void(const TimeStep& at)>& prepare)
+{
+  const auto at = now();
+  auto& module = modules_[m];
+  trial_.emplace();
+  trial_->module = m;
+  trial_->config = std::move(config);
+  trial_->parked = std::exchange(static_cast<Carrier&>(module), std::move(candidate));
+  module.config = &trial_->config;
+  auto old_driver = std::move(driver_);
+  is_running_ = false; // the start-up deadline holds
+  try {
+    arrange_timings(module);
+    describe(m);
+    prepare(at);
     module.is_attached = true;
     attach_driver(); // functions may have other numbers now, or not be there
     if (module.host != nullptr) hand_over(m, at);
@@ -104,14 +119,19 @@ void Session::restore_parked()
   arrange_timings(module);
   describe(trial_->module);
   if (module.host == nullptr) return;
-  auto& record = control_.modules[trial_->module];
-  record.pid = module.host->pid;
-  record.reply_fd = module.host->reply_object.get();
+  show_host(trial_->module);
   try { // whether it was parked or not
     call(trial_->module, Operation::resume, now());
   } catch (const Error& error) { // dead meanwhile: the next step finds that out
     log::debug("run", "while taking back: {}", error.what());
   }
+}
+
+void Session::show_host(std::uint32_t m)
+{
+  if (modules_[m].host == nullptr) return;
+  control_.modules[m].pid = modules_[m].host->pid;
+  control_.modules[m].reply_fd = modules_[m].host->reply_object.get();
 }
 
 void Session::attach_driver()

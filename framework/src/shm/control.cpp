@@ -38,8 +38,8 @@ void copy_text(char* to, std::size_t capacity, std::string_view text, std::strin
 
 const char* to_string(Operation operation)
 {
-  constexpr const char* names[] = {"none", "create", "define", "attach", "start", "seal",
-                                   "step", "call",   "quit",   "park",   "resume"};
+  constexpr const char* names[] = {"none", "create", "define", "attach", "start",  "seal",
+                                   "step", "call",   "quit",   "park",   "resume", "attach"};
   const auto i = static_cast<std::uint32_t>(operation);
   return i < std::size(names) ? names[i] : "an unknown call";
 }

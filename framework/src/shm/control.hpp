@@ -75,8 +75,24 @@ struct ParameterRecord {
 };
 
 /// park: give up the right to write the own windows, so that another carrier of the module can have it; resume: take
-/// it (back).
-enum class Operation : std::uint32_t { none, create, define, attach, start, seal, step, call, quit, park, resume };
+/// it (back). attach_beside: park, answer, so that the slot is free for the carrier at work, and only then attach; the
+/// end of that is told by the reply word too, as the number of the request with `attached_beside` flipped, and
+/// results[0] says whether the attach looked at data of a level.
+enum class Operation : std::uint32_t {
+  none,
+  create,
+  define,
+  attach,
+  start,
+  seal,
+  step,
+  call,
+  quit,
+  park,
+  resume,
+  attach_beside
+};
+inline constexpr std::uint32_t attached_beside = 1u << 31;
 
 enum RequestFlag : std::uint32_t {
   arm_state = 1,    ///< copy carried state from level -1 (the first act of a step)

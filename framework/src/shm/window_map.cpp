@@ -56,9 +56,11 @@ WindowMap::Location WindowMap::locate(std::uint32_t window, std::uint32_t field,
     record = &map->fields()[field];
   }
   const auto& levels = control_.table(epoch).windows[window];
-  MULLION_REQUIRE(level >= 0 && static_cast<std::uint32_t>(level) < levels.n_slots, Errc::shape,
-                  "window {} keeps {} committed levels; level -{} was asked for", control_.windows[window].name,
-                  levels.n_slots - 1, level);
+  MULLION_REQUIRE(
+      level >= 0 && static_cast<std::uint32_t>(level) < levels.n_slots, Errc::shape,
+      "window {} keeps {} committed level{}; level -{} was asked for (the driver of a run says how many each "
+      "window keeps, and no module can have more)",
+      control_.windows[window].name, levels.n_slots - 1, levels.n_slots == 2 ? "" : "s", level);
   return {map->data(*record, slot_of(levels, level)), record};
 }
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace mullion::test {
 namespace {
@@ -41,6 +42,7 @@ void FaultyStructure::define(const TimeStep&)
   make_window("spare", {spare_pane(options_.fault == "huge")});
   look_up();
   for (const auto& value : {displacement_, velocity_, acceleration_, work_}) value.now().setZero();
+  displacement_.now().setConstant(options_.first_displacement);
   if (options_.fault == "stray_write_peer") (void)peer_pane("fluid", ""); // the fluid's wall is mapped from now on
   misbehave("define", 0);
 }
@@ -75,7 +77,9 @@ void FaultyStructure::step(const TimeStep& step)
   double& a = acceleration_.now()(0, 0);
   const double load = traction_.at(step.end)(0, 0);
   const double u_before = u;
-  a = (load - options_.stiffness * u) / options_.mass;
+  if (std::exchange(has_derived_, false) && derived_ != displacement_.committed()(0, 0))
+    throw Error(Errc::internal, "what its attach derived is of another commit");
+  a = (load - options_.damping * v - options_.stiffness * u) / options_.mass;
   v += step.dt * a;
   u += step.dt * v;
   const bool is_left_out = options_.fault == "unwritten" && step.index == options_.at_step;
@@ -95,6 +99,12 @@ void FaultyStructure::misbehave(const std::string& call, std::int64_t step)
   if (fault == "exit") std::exit(3);
   if (fault == "hang") return hang();
   if (fault == "slow") return dawdle(options_.duration);
+  if (fault == "derive") {
+    has_derived_ = true;
+    derived_ = displacement_.committed()(0, 0);
+    return dawdle(options_.duration);
+  }
+  if (fault == "look_back") return (void)displacement_.committed(2);
   if (fault == "print") return print_two_megabytes();
   if (fault == "log") {
     log().info("the first line of step {}\nthe second line of step {}", step, step);

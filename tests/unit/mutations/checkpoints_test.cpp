@@ -1,8 +1,10 @@
 // Damaged checkpoints. A file that was altered is refused by its trailer, before the HDF5 library sees a byte of it:
 // the library itself crashes or never ends on some altered files, which is why there is a trailer. Behind one that is
 // right, what is said in the file may still be nonsense: then it is an error with a reason, or a checkpoint whose
-// parts fit together.
+// parts fit together. And the image itself may be garbled behind a right trailer: what becomes of the library then
+// becomes of a child process.
 #include "io/checkpoint.hpp"
+#include "io/checkpoint_trial.hpp"
 #include "io/xdmf_index.hpp"
 #include "mutations.hpp"
 #include "run/step_clock.hpp"
@@ -14,6 +16,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -22,6 +25,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <sys/stat.h>
 #include <vector>
 
 using namespace mullion;
@@ -310,6 +314,36 @@ void damage_files(std::uint64_t count)
   });
 }
 
+/// Garbled images with trailers that are right: the child process meets what they do, and what passes it can be read.
+void damage_images(std::uint64_t count)
+{
+  const Scratch folder;
+  const auto file = folder / "a.h5";
+  const auto image = to_image(Sample().checkpoint);
+  const std::span<const std::byte> all = image;
+  const Bytes whole(all.begin(), all.end());
+  write_plainly(file, with_trailer(whole));
+  REQUIRE_NOTHROW(try_checkpoint(file));
+
+  std::uint64_t n_refused = 0;
+  for_each_mutation(count, [&](Random& random) {
+    auto bytes = whole;
+    for (auto n = 1 + random.below(8); n > 0; --n) mutate(bytes, 0, bytes.size(), random);
+    write_plainly(file, with_trailer(bytes));
+    try {
+      // A sound file of this size takes some milliseconds; where a busy machine takes longer one more is refused.
+      try_checkpoint(file, std::chrono::seconds(2));
+    } catch (const Error& error) {
+      CHECK(error.code() == Errc::io);
+      const std::string text = error.what();
+      CHECK_MESSAGE(text.starts_with(file.string() + " is no checkpoint that can be read: "), text);
+      return void(++n_refused);
+    }
+    use(read_checkpoint(file));
+  });
+  CHECK(n_refused > 0);
+}
+
 /// @returns why the file of these items is refused; "": it is not
 std::string refusal(const std::vector<Item>& items, const std::filesystem::path& file)
 {
@@ -362,8 +396,35 @@ TEST_CASE("a checkpoint with damaged contents is refused with the reason, or its
   damage_contents(300);
 }
 
+TEST_CASE(
+    "a checkpoint whose image is garbled behind a right trailer is refused, whatever the HDF5 library makes of it")
+{
+  damage_images(300);
+}
+
+TEST_CASE("a child process that tries a checkpoint and does not come to an end is killed, with a message")
+{
+  const Scratch folder;
+  const auto file = folder / "a.h5";
+  REQUIRE(::mkfifo(file.c_str(), 0600) == 0); // nobody ever writes into it: opening it to read never ends
+
+  std::string text;
+  try {
+    try_checkpoint(file, std::chrono::milliseconds(50));
+  } catch (const Error& error) {
+    text = error.what();
+  }
+
+  CHECK(text.ends_with("reading it did not come to an end within 0.05 s"));
+}
+
 TEST_SUITE("full")
 {
+  TEST_CASE("10,000 checkpoints with garbled images are refused, whatever the HDF5 library makes of them")
+  {
+    damage_images(10'000);
+  }
+
   TEST_CASE("10,000 damaged checkpoint files are refused by their trailers") { damage_files(10'000); }
   TEST_CASE("10,000 checkpoints with damaged contents are refused with the reason, or their parts fit together")
   {
