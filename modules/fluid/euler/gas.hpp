@@ -41,14 +41,16 @@ template <int D> inline Values<D> conserved(const Gas& gas, const Values<D>& w)
   return c;
 }
 
-/// (rho, u, p) of amounts in a volume. Not checked: see is_gas().
-template <int D> inline Values<D> primitive(const Gas& gas, const Values<D>& amounts, double volume)
+/// (rho, u, p) of amounts in a volume; T: a number, or several at a time. Not checked: see is_gas().
+template <int D, class T>
+[[gnu::always_inline]] inline std::array<T, n_values<D>>
+primitive(const Gas& gas, const std::array<T, n_values<D>>& amounts, const T& volume)
 {
-  Values<D> w;
-  const double per_volume = 1.0 / volume;
-  const double per_mass = 1.0 / amounts[0];
+  std::array<T, n_values<D>> w;
+  const T per_volume = 1.0 / volume;
+  const T per_mass = 1.0 / amounts[0];
   w[0] = amounts[0] * per_volume;
-  double kinetic = 0.0;
+  T kinetic{};
   for (int d = 1; d <= D; ++d) {
     w[d] = amounts[d] * per_mass;
     kinetic += amounts[d] * w[d];

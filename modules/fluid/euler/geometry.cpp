@@ -186,8 +186,8 @@ void update_reconstruction(const Mesh<D>& mesh, const Nodes<D>& x, std::size_t b
       if (mesh.is_periodic()) from_neighbour -= mesh.shifts[mesh.face_shift[f]];
     }
     for (int i = 0; i < D; ++i) {
-      geometry.offsets[f].owner[static_cast<std::size_t>(i)] = from_owner[i];
-      geometry.offsets[f].neighbour[static_cast<std::size_t>(i)] = from_neighbour[i];
+      geometry.offsets[f][0][static_cast<std::size_t>(i)] = from_owner[i];
+      geometry.offsets[f][1][static_cast<std::size_t>(i)] = from_neighbour[i];
     }
   }
   std::vector<Vec<D>> d;

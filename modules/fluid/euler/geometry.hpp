@@ -54,10 +54,8 @@ template <int D> struct CellShape {
 /// Volume and centroid of one cell.
 template <int D> CellShape<D> cell_shape(const Mesh<D>& mesh, const Nodes<D>& x, std::size_t cell);
 
-/// Where the values of owner and neighbour go: from either centroid to the middle of the face.
-template <int D> struct FaceOffsets {
-  std::array<double, D> owner{}, neighbour{};
-};
+/// Where the values of owner and neighbour go: from either centroid to the middle of the face, the owner's first.
+template <int D> using FaceOffsets = std::array<std::array<double, D>, 2>;
 
 /// The gradient's weights: grad W_i = sum_j c_j (W_j - W_i), least squares with weights 1/d^2.
 ///

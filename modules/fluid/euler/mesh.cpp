@@ -347,12 +347,14 @@ template <int D> Mesh<D> build_mesh(const MeshSource<D>& source)
   mesh.face_begin.assign(mesh.n_cells + 1, 0);
   mesh.cell_face_begin.assign(mesh.n_cells + 1, 0);
   mesh.face_nodes.reserve(links.size());
+  mesh.owner.reserve(links.size());
   mesh.neighbour.reserve(links.size());
   std::vector<std::vector<Seen>> seen(mesh.n_cells); // as the blocks count
   for (std::size_t f = 0; f < links.size(); ++f) {
     const auto& link = links[f];
     const Index owner = number[static_cast<std::size_t>(link.a.cell)];
     mesh.face_nodes.push_back(nodes_of<D>(cells, link.a));
+    mesh.owner.push_back(owner);
     ++mesh.face_begin[static_cast<std::size_t>(owner) + 1];
     ++mesh.cell_face_begin[static_cast<std::size_t>(owner) + 1];
     if (is_periodic) mesh.face_shift.push_back(link.shift);

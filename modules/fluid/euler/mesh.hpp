@@ -64,6 +64,7 @@ template <int D> struct Mesh {
 
   // The faces of owner c are face_begin[c] … face_begin[c + 1]; an owner has the lower number.
   std::vector<Index> face_begin;
+  std::vector<Index> owner;     ///< of each face
   std::vector<Index> neighbour; ///< of each face: a cell, or -1 - (number of the boundary face)
   std::vector<FaceNodes<D>> face_nodes;
   std::vector<BoundaryFace<D>> boundary; ///< by number of their faces

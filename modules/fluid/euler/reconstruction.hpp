@@ -2,8 +2,8 @@
 #pragma once
 
 #include "gas.hpp"
+#include "lanes.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -20,20 +20,30 @@ template <int D> struct LimiterOptions {
 };
 
 template <int D> using Gradient = std::array<Values<D>, D>; ///< of (rho, u, p): d/dx, d/dy, …
+template <int D> using Slopes = std::array<Row<D>, D>;      ///< the same, to compute with
 
 /// How far the values of the stencil lie below and above the cell's own.
 template <int D> struct Spread {
-  Values<D> below{}, above{}; ///< <= 0 and >= 0
+  Row<D> below{}, above{}; ///< <= 0 and >= 0
 };
 
-/// W + grad W . offset; W itself where that is no gas.
+/// One cell of the stencil more: its gradient weight and how much its values differ.
 template <int D>
-inline Values<D> value_at(const Values<D>& w, const Gradient<D>& gradient, const std::array<double, D>& offset)
+MULLION_INLINE void add_to_gradient(const std::array<double, D>& weight, const Row<D>& jump, Slopes<D>& slopes,
+                                    Spread<D>& spread)
 {
-  Values<D> face = w;
-  for (int d = 0; d < D; ++d)
-    for (std::size_t v = 0; v < w.size(); ++v) face[v] += gradient[d][v] * offset[d];
-  return is_gas<D>(face) ? face : w;
+  for (int d = 0; d < D; ++d) slopes[d] += weight[d] * jump;
+  spread.below = jump < spread.below ? jump : spread.below;
+  spread.above = jump > spread.above ? jump : spread.above;
+}
+
+/// W + grad W . offset. Not checked: see is_gas().
+template <int D>
+MULLION_INLINE Row<D> value_at(const Row<D>& w, const Gradient<D>& gradient, const std::array<double, D>& offset)
+{
+  Row<D> face = w;
+  for (int d = 0; d < D; ++d) face += row_of<D>(gradient[d]) * offset[d];
+  return face;
 }
 
 /// Shrinks a gradient, each variable by its own factor: the least over the faces of the cell.
@@ -46,42 +56,37 @@ inline Values<D> value_at(const Values<D>& w, const Gradient<D>& gradient, const
 ///
 /// @param offset  offset(k): from the centroid to the middle of the cell's k-th face, as an array of D numbers
 template <int D, class Offset>
-[[gnu::always_inline]] inline void limit_gradient(const LimiterOptions<D>& options, double volume,
-                                                  const Spread<D>& spread, std::size_t n_faces, const Offset& offset,
-                                                  Gradient<D>& gradient)
+MULLION_INLINE void limit_gradient(const LimiterOptions<D>& options, double volume, const Spread<D>& spread,
+                                   std::size_t n_faces, const Offset& offset, Slopes<D>& slopes)
 {
-  constexpr std::size_t n = n_values<D>;
-  Values<D> factor, smooth;
   const double h_cubed = D == 2 ? volume * std::sqrt(volume) : volume;
   const double part = options.k / options.length;
   const double scale = part * part * part * h_cubed;
-  for (std::size_t v = 0; v < n; ++v) {
-    factor[v] = 1.0;
-    smooth[v] = options.reference[v] * options.reference[v] * scale;
-  }
+  const auto reference = row_of<D>(options.reference);
+  const Row<D> smooth = reference * reference * scale;
   const bool is_smooth = options.limiter == Limiter::venkatakrishnan;
+  // The least quotient is found by products, and only that one is divided out. 0 / 0, without slope and spread, is
+  // never less: there is nothing to limit.
+  Row<D> least = Row<D>{} + 1.0, per = least;
   for (std::size_t k = 0; k < n_faces; ++k) {
     const std::array<double, D>& to_face = offset(k);
-    Values<D> a, b{};
-    for (int d = 0; d < D; ++d)
-      for (std::size_t v = 0; v < n; ++v) b[v] += gradient[d][v] * to_face[d];
-    for (std::size_t v = 0; v < n; ++v) a[v] = b[v] < 0.0 ? spread.below[v] : spread.above[v];
+    Row<D> b{};
+    for (int d = 0; d < D; ++d) b += slopes[d] * to_face[d];
+    const Row<D> a = b < 0.0 ? spread.below : spread.above; // of b's sign
+    Row<D> above, below;
     if (is_smooth) {
-      for (std::size_t v = 0; v < n; ++v) {
-        const double common = a[v] * a[v] + smooth[v];
-        const double below = common + b[v] * (a[v] + 2.0 * b[v]);
-        const double psi = (common + 2.0 * a[v] * b[v]) / below;
-        factor[v] = psi < factor[v] ? psi : factor[v]; // 0 / 0 without slope and spread: nothing to limit
-      }
+      const Row<D> common = a * a + smooth;
+      above = common + 2.0 * a * b;
+      below = common + b * (a + 2.0 * b);
     } else {
-      for (std::size_t v = 0; v < n; ++v) {
-        const double psi = a[v] / b[v]; // no number without a slope
-        factor[v] = psi < factor[v] ? psi : factor[v];
-      }
+      above = size_of<Row<D>>(a);
+      below = size_of<Row<D>>(b);
     }
+    const auto is_less = above * per < least * below;
+    least = is_less ? above : least;
+    per = is_less ? below : per;
   }
-  for (int d = 0; d < D; ++d)
-    for (std::size_t v = 0; v < n; ++v) gradient[d][v] *= factor[v];
+  for (int d = 0; d < D; ++d) slopes[d] *= least / per;
 }
 
 } // namespace mullion::euler

@@ -2,6 +2,7 @@
 #include "solver.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -36,7 +37,7 @@ Solver<D>::Solver(Mesh<D> mesh, std::vector<Condition<D>> conditions, const Sche
       const Index other = mesh_.neighbour[static_cast<std::size_t>(f)];
       if (other < 0) continue;
       const auto theirs = part_of(static_cast<std::size_t>(other));
-      if (theirs != own) parts_[theirs]->halo.emplace_back(f, static_cast<Index>(owner));
+      if (theirs != own) parts_[theirs]->halo.push_back(f);
     }
   }
   const bool is_second = scheme_.order == 2;
@@ -44,14 +45,42 @@ Solver<D>::Solver(Mesh<D> mesh, std::vector<Condition<D>> conditions, const Sche
   values_.resize(n);
   next_values_.resize(n);
   gradients_.resize(is_second ? n : 0);
-  residuals_.resize(n);
+  for (auto& part : parts_) size_rings(*part);
   sums_.resize(scheme_.integrator == Integrator::rk4 ? n : 0);
+  swept_sums_.resize(sums_.size());
   wall_.resize(mesh_.boundary.size());
   stage_pressure_.resize(mesh_.boundary.size());
   prescribed_.resize(has_prescribed_ ? mesh_.boundary.size() : 0);
 }
 
+template <int D> void Solver<D>::size_rings(Part& part) const
+{
+  std::size_t reach = 0; // from the first cell that is not finished to the last that its faces meet
+  const auto meet = [&](std::size_t from, Index other) {
+    if (other >= 0 && static_cast<std::size_t>(other) < part.end)
+      reach = std::max(reach, static_cast<std::size_t>(other) - from);
+  };
+  for (const Index f : part.halo) meet(part.begin, mesh_.neighbour[static_cast<std::size_t>(f)]);
+  for (auto f = static_cast<std::size_t>(mesh_.face_begin[part.begin]);
+       f < static_cast<std::size_t>(mesh_.face_begin[part.end]); ++f)
+    meet(static_cast<std::size_t>(mesh_.owner[f]), mesh_.neighbour[f]);
+  const auto length = std::bit_ceil(reach + sweep_block + 1);
+  part.residuals.assign(length, {});
+  part.swept.assign(length, 0.0);
+}
+
 template <int D> Outcome<D> Solver<D>::place(const Nodes<D>& x)
+{
+  const auto outcome = place_cells(x);
+  if (outcome.kind != Outcome<D>::Kind::fine) return outcome;
+  crew_.run([&](int p) {
+    const auto& part = *parts_[static_cast<std::size_t>(p)];
+    update_planes<D>(mesh_, x, part.begin, part.end, geometry_);
+  });
+  return outcome;
+}
+
+template <int D> Outcome<D> Solver<D>::place_cells(const Nodes<D>& x)
 {
   std::vector<BadCellShape> bad(parts_.size());
   crew_.run([&](int p) {
@@ -68,7 +97,6 @@ template <int D> Outcome<D> Solver<D>::place(const Nodes<D>& x)
     }
   crew_.run([&](int p) {
     const auto& part = *parts_[static_cast<std::size_t>(p)];
-    update_planes<D>(mesh_, x, part.begin, part.end, geometry_);
     if (!gradients_.empty()) update_reconstruction<D>(mesh_, x, part.begin, part.end, geometry_);
   });
   return outcome;
@@ -85,7 +113,7 @@ template <int D>
 Outcome<D> Solver<D>::advance_moving(std::span<Values<D>> amounts, double t, double dt, const Nodes<D>& x,
                                      const Nodes<D>& v, double courant_limit)
 {
-  if (auto outcome = place(x); outcome.kind != Outcome<D>::Kind::fine) return outcome;
+  if (auto outcome = place_cells(x); outcome.kind != Outcome<D>::Kind::fine) return outcome;
   return run({amounts, t, dt, &x, &v, 0.0, courant_limit});
 }
 
@@ -138,8 +166,12 @@ template <int D> Outcome<D> Solver<D>::run(const Step& step)
     part.bad_cell = -1;
     part.bad_shape = false;
     find_values(part, step.amounts);
-    for (std::size_t c = part.begin; c < part.end; ++c) residuals_[c].fill(0.0);
-    for (std::size_t c = part.begin; c < part.end && !sums_.empty(); ++c) sums_[c].fill(0.0);
+    for (auto& residual : part.residuals) residual.fill(0.0); // a step that failed leaves some
+    std::fill(part.swept.begin(), part.swept.end(), 0.0);
+    for (std::size_t c = part.begin; c < part.end && !sums_.empty(); ++c) {
+      sums_[c].fill(0.0);
+      swept_sums_[c] = 0.0;
+    }
   });
   const auto failed = [&]() -> Outcome<D> {
     for (const auto& part : parts_)
@@ -228,14 +260,14 @@ template <int D> void Solver<D>::add_wall(const Step& step, double weight)
 template <int D> std::size_t Solver<D>::memory() const
 {
   const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-  std::size_t bytes = of(mesh_.order) + of(mesh_.face_begin) + of(mesh_.neighbour) + of(mesh_.face_nodes) +
-                      of(mesh_.boundary) + of(mesh_.cell_face_begin) + of(mesh_.cell_faces) + of(mesh_.stencil_begin) +
-                      of(mesh_.stencil) + of(mesh_.face_shift) + of(mesh_.stencil_shift);
+  std::size_t bytes = of(mesh_.order) + of(mesh_.face_begin) + of(mesh_.owner) + of(mesh_.neighbour) +
+                      of(mesh_.face_nodes) + of(mesh_.boundary) + of(mesh_.cell_face_begin) + of(mesh_.cell_faces) +
+                      of(mesh_.stencil_begin) + of(mesh_.stencil) + of(mesh_.face_shift) + of(mesh_.stencil_shift);
   bytes += of(geometry_.volume) + of(geometry_.centroid) + of(geometry_.offsets) + of(geometry_.weights) +
            of(geometry_.planes);
-  bytes += of(values_) + of(next_values_) + of(gradients_) + of(residuals_) + of(sums_) + of(local_dt_) + of(rates_) +
+  bytes += of(values_) + of(next_values_) + of(gradients_) + of(sums_) + of(swept_sums_) + of(local_dt_) + of(rates_) +
            of(prescribed_) + of(stage_pressure_) + of(wall_);
-  for (const auto& part : parts_) bytes += sizeof(*part) + of(part->halo);
+  for (const auto& part : parts_) bytes += sizeof(*part) + of(part->halo) + of(part->residuals) + of(part->swept);
   return bytes;
 }
 

@@ -20,6 +20,7 @@
 namespace mullion::euler {
 
 enum class Integrator { jameson, rk4 };
+enum class Width { baseline, four, eight, best }; ///< lanes of a vector; what the processor has is the limit
 
 template <int D> struct Scheme {
   Gas gas;
@@ -52,17 +53,21 @@ template <int D> struct Outcome {
 
 /// The cells of one thread, and its scratch.
 template <int D> struct SolverPart {
-  std::size_t begin = 0, end = 0;            ///< cells
-  std::vector<std::pair<Index, Index>> halo; ///< (face, owner): owned by others, with a neighbour in here
-  Index bad_cell = -1;                       ///< the first that is no gas or has no volume
+  std::size_t begin = 0, end = 0; ///< cells
+  std::vector<Index> halo;        ///< faces that others own, with a neighbour in here
+  Index bad_cell = -1;            ///< the first that is no gas or has no volume
   bool bad_shape = false;
   double courant = 0.0;
   Index courant_cell = -1;
 
-  FaceBatch<D> batch;
-  std::array<std::pair<std::size_t, std::size_t>, FaceBatch<D>::capacity> boundary; ///< (in the batch, boundary face)
-  std::size_t n_boundary = 0;
+  // What leaves each cell, and what its faces sweep: of the cells between the first that is not finished and the last
+  // that a face has met. Rings, a power of two long; a cell's place is its number modulo the length.
+  std::vector<Values<D>> residuals;
+  std::vector<double> swept;
 };
+
+/// Cells whose faces are computed before the cells are finished.
+inline constexpr std::size_t sweep_block = 128;
 
 /// One stage of a step: from which instant its fluxes are, and what follows from them.
 struct SolverStage {
@@ -125,16 +130,25 @@ private:
     double courant_limit;
   };
 
+  /// As place(), without the planes of the faces.
+  Outcome<D> place_cells(const Nodes<D>& x);
   Outcome<D> run(const Step& step);
   void find_values(Part& part, std::span<const Values<D>> amounts);
   void find_planes(const Part& part, const Step& step, const Stage& stage);
   void find_gradients(const Part& part);
   void find_courant(Part& part, const Step& step);
   void sweep(Part& part, const Step& step, const Stage& stage);
-  void flux_between(Part& part, std::size_t n);
-  void gather(Part& part, std::size_t k, std::size_t face, std::size_t owner);
-  void finish(Part& part, const Step& step, const Stage& stage, std::size_t cell);
+  template <int N, bool is_second, Flux flux> void sweep_loop(Part& part, const Step& step, const Stage& stage);
+  template <int N> void finish(Part& part, const Step& step, const Stage& stage, std::size_t begin, std::size_t end);
+  /// Puts the states that boundaries set beside the gas.
+  template <std::size_t N>
+  void set_beside(const std::array<std::size_t, N>& faces, FaceStates<D, Lanes<N>>& states) const;
+  /// Puts the fluxes that boundaries impose; notes the pressure on walls.
+  template <std::size_t N>
+  void set_fluxes(const std::array<std::size_t, N>& faces, const FaceStates<D, Lanes<N>>& states,
+                  std::array<Lanes<N>, n_values<D>>& fluxes);
   void find_prescribed(const Step& step, double time_of_stage);
+  void size_rings(Part& part) const;
   void add_wall(const Step& step, double weight);
 
   Mesh<D> mesh_;
@@ -144,14 +158,14 @@ private:
   std::vector<std::unique_ptr<Part>> parts_; // each in memory of its own
 
   Geometry<D> geometry_;
-  std::vector<Values<D>> values_, next_values_;      ///< (rho, u, p) of the stage and the next
-  std::vector<Gradient<D>> gradients_;               ///< limited
-  std::vector<std::array<double, D + 3>> residuals_; ///< what leaves each cell, and what its faces sweep
-  std::vector<std::array<double, D + 3>> sums_;      ///< over the stages; rk4 only
-  std::vector<double> local_dt_;                     ///< local steps only
-  std::vector<double> rates_;                        ///< d rho / dt; local steps only
-  std::vector<Values<D>> prescribed_;                ///< by boundary face; where there are any
-  std::vector<double> stage_pressure_;               ///< by boundary face
+  std::vector<Values<D>> values_, next_values_; ///< (rho, u, p) of the stage and the next
+  std::vector<Gradient<D>> gradients_;          ///< limited
+  std::vector<Values<D>> sums_;                 ///< of what left each cell over the stages; rk4 only
+  std::vector<double> swept_sums_;              ///< of what its faces swept; rk4 only
+  std::vector<double> local_dt_;                ///< local steps only
+  std::vector<double> rates_;                   ///< d rho / dt; local steps only
+  std::vector<Values<D>> prescribed_;           ///< by boundary face; where there are any
+  std::vector<double> stage_pressure_;          ///< by boundary face
   std::vector<WallIntegral<D>> wall_;
   double residual_ = 0.0;
   bool has_prescribed_ = false;

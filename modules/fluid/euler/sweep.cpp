@@ -1,4 +1,7 @@
-// The passes over the mesh where the time goes: values, planes, gradients, fluxes and update.
+// The passes over the mesh where the time goes: values, planes, gradients, fluxes and update. Faces and cells are taken
+// several at a time: what belongs to one stands together in memory, is loaded as a row, and rows of several are turned
+// into vectors. What few faces need, boundaries and states that are no gas, is done apart, so that the loops have no
+// branches.
 #include "solver.hpp"
 
 #include <algorithm>
@@ -8,239 +11,456 @@ namespace mullion::euler {
 
 namespace {
 
-template <int D> struct GradientPass {
-  const Mesh<D>& mesh;
-  const Geometry<D>& geometry;
-  const LimiterOptions<D>& limiter;
-  const std::vector<Values<D>>& values;
-  std::vector<Gradient<D>>& gradients;
+template <int N> using Numbers = std::array<std::size_t, static_cast<std::size_t>(N)>;
+template <int N> using Count = std::integral_constant<int, N>;
+
+// Eight or four at a time where the processor can. The bits are the same: each operation is rounded by itself, no
+// product is contracted with a sum (-ffp-contract=off), and no lane sees another.
+#if defined(__x86_64__)
+template <class Loop> [[gnu::target("avx512f,avx512dq,avx512vl"), gnu::noinline]] void run_widest(const Loop& loop)
+{
+  loop(Count<8>{});
+}
+template <class Loop> [[gnu::target("avx2"), gnu::noinline]] void run_wide(const Loop& loop) { loop(Count<4>{}); }
+#endif
+
+/// Runs a loop with vectors that this processor has. It gets the number of lanes, and must be inlined always.
+template <class Loop> void run_with(Width width, const Loop& loop)
+{
+#if defined(__x86_64__)
+  static const Width best = __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+                                    __builtin_cpu_supports("avx512vl") != 0
+                                ? Width::eight
+                            : __builtin_cpu_supports("avx2") != 0 ? Width::four
+                                                                  : Width::baseline;
+  const auto chosen = std::min(width, best);
+  if (chosen == Width::eight) return run_widest(loop);
+  if (chosen == Width::four) return run_wide(loop);
+#else
+  (void)width;
+#endif
+  loop(Count<4>{});
+}
+
+/// `first` and those behind it; the last one again where there are fewer.
+template <int N> MULLION_INLINE Numbers<N> numbers_from(std::size_t first, std::size_t end)
+{
+  Numbers<N> numbers;
+  for (std::size_t i = 0; i < N; ++i) numbers[i] = first + i < end ? first + i : end - 1;
+  return numbers;
+}
+
+template <int D> MULLION_INLINE Row<D> plane_row(const FacePlane<D>& plane)
+{
+  static_assert(sizeof plane == sizeof(Values<D>));
+  Row<D> row{};
+  __builtin_memcpy(&row, &plane, sizeof plane);
+  return row;
+}
+
+/// What the states at faces are made from.
+template <int D> struct FaceArrays {
+  const Values<D>* values;
+  const Gradient<D>* gradients;
+  const FacePlane<D>* planes;
+  const FaceOffsets<D>* offsets;
+  const Index* owner;
+  const Index* neighbour;
 };
 
-template <int D>
-[[gnu::always_inline]] inline void find_gradients_loop(const GradientPass<D>& pass, std::size_t begin, std::size_t end)
+/// Values of one side at the faces, the cells' own where the gradient leads to what is no gas.
+template <int D, int N, bool is_second>
+MULLION_INLINE std::array<Lanes<N>, n_values<D>> side_of(const FaceArrays<D>& in, const Numbers<N>& faces,
+                                                         const Numbers<N>& cells, std::size_t side)
 {
-  const auto& mesh = pass.mesh;
-  const bool is_limited = pass.limiter.limiter != Limiter::none;
-  constexpr std::size_t n = n_values<D>;
+  std::array<Row<D>, N> rows;
+  for (std::size_t i = 0; i < N; ++i) {
+    rows[i] = row_of<D>(in.values[cells[i]]);
+    if constexpr (is_second) rows[i] = value_at<D>(rows[i], in.gradients[cells[i]], in.offsets[faces[i]][side]);
+  }
+  auto state = turned<n_values<D>, Row<D>, N>(rows);
+  if constexpr (is_second) {
+    const auto is_fine = (state[0] > 0.0) & (state[D + 1] > 0.0);
+    if (any(~is_fine)) [[unlikely]] {
+      for (std::size_t i = 0; i < N; ++i) rows[i] = row_of<D>(in.values[cells[i]]);
+      const auto plain = turned<n_values<D>, Row<D>, N>(rows);
+      for (std::size_t v = 0; v < n_values<D>; ++v) state[v] = is_fine ? state[v] : plain[v];
+    }
+  }
+  return state;
+}
+
+/// States and planes of faces; on the boundary the gas stands on both sides.
+template <int D, int N, bool is_second>
+MULLION_INLINE FaceStates<D, Lanes<N>> states_at(const FaceArrays<D>& in, const Numbers<N>& faces)
+{
+  Numbers<N> owners, others;
+  std::array<Row<D>, N> planes;
+  for (std::size_t i = 0; i < N; ++i) {
+    const Index other = in.neighbour[faces[i]], owner = in.owner[faces[i]];
+    owners[i] = static_cast<std::size_t>(owner);
+    others[i] = static_cast<std::size_t>(other < 0 ? owner : other);
+    planes[i] = plane_row<D>(in.planes[faces[i]]);
+  }
+  FaceStates<D, Lanes<N>> states;
+  const auto plane = turned<D + 2, Row<D>, N>(planes);
+  for (std::size_t d = 0; d < D; ++d) states.normal[d] = plane[d];
+  states.area = plane[D];
+  states.speed = plane[D + 1];
+  states.left = side_of<D, N, is_second>(in, faces, owners, 0);
+  states.right = side_of<D, N, is_second>(in, faces, others, 1);
+  return states;
+}
+
+/// Planes of moving faces in the plane, several at a time: as sweep_of() and plane_of().
+template <int D, int N>
+MULLION_INLINE void planes_of(const Mesh<D>& mesh, const Nodes<D>& x, const Nodes<D>& v, double dt,
+                              const SolverStage& stage, std::size_t begin, std::size_t end, FacePlane<D>* planes)
+{
+  if constexpr (D == 2) {
+    using Pack = Lanes<N>;
+    const auto* face_nodes = mesh.face_nodes.data();
+    const double *at = x.data(), *speed = v.data();
+    const auto x_step = x.outerStride(), v_step = v.outerStride();
+    const double near_dt = 0.5 * stage.near_part * dt, far_dt = 0.5 * stage.far_part * dt;
+    for (std::size_t f = begin; f < end; f += N) {
+      const auto faces = numbers_from<N>(f, end);
+      std::array<Row<2>, N> places, velocities;
+      for (std::size_t i = 0; i < N; ++i) {
+        const auto a = face_nodes[faces[i]][0], b = face_nodes[faces[i]][1];
+        __builtin_memcpy(&places[i], at + a * x_step, 16);
+        __builtin_memcpy(reinterpret_cast<char*>(&places[i]) + 16, at + b * x_step, 16);
+        __builtin_memcpy(&velocities[i], speed + a * v_step, 16);
+        __builtin_memcpy(reinterpret_cast<char*>(&velocities[i]) + 16, speed + b * v_step, 16);
+      }
+      const auto [xa, ya, xb, yb] = turned<4, Row<2>, N>(places);
+      const auto [ua, va, ub, vb] = turned<4, Row<2>, N>(velocities);
+      const Pack along_x = xb - xa, along_y = yb - ya, turn_x = ub - ua, turn_y = vb - va;
+      const Pack sum_x = 0.5 * (ua + ub), sum_y = 0.5 * (va + vb);
+      Pack area_x = along_y + near_dt * turn_y, area_y = -(along_x + near_dt * turn_x);
+      Pack rate = sum_x * area_x + sum_y * area_y;
+      if (stage.far != 0.0) {
+        const Pack far_x = along_y + far_dt * turn_y, far_y = -(along_x + far_dt * turn_x);
+        const Pack far_rate = sum_x * far_x + sum_y * far_y;
+        area_x = stage.near * area_x + stage.far * far_x;
+        area_y = stage.near * area_y + stage.far * far_y;
+        rate = stage.near * rate + stage.far * far_rate;
+      }
+      const Pack area = root<Pack>(area_x * area_x + area_y * area_y);
+      const Pack per_area = 1.0 / area;
+      const auto rows = turned_back<2, N, 4>({area_x * per_area, area_y * per_area, area, rate * per_area});
+      for (std::size_t i = 0; i < N; ++i)
+        __builtin_memcpy(static_cast<void*>(&planes[faces[i]]), &rows[i], sizeof rows[i]);
+    }
+  } else {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto near = sweep_of<D>(mesh.face_nodes[f], x, v, stage.near_part * dt);
+      Vec<D> area = stage.near * near.area;
+      double rate = stage.near * near.volume / (stage.near_part * dt);
+      if (stage.far != 0.0) {
+        const auto far = sweep_of<D>(mesh.face_nodes[f], x, v, stage.far_part * dt);
+        area += stage.far * far.area;
+        rate += stage.far * far.volume / (stage.far_part * dt);
+      }
+      planes[f] = plane_of<D>(area, rate);
+    }
+  }
+}
+
+template <int D>
+MULLION_INLINE void gradients_of(const Mesh<D>& mesh, const Geometry<D>& geometry, const LimiterOptions<D>& limiter,
+                                 const Values<D>* values, std::size_t begin, std::size_t end, Gradient<D>* gradients)
+{
+  const bool is_limited = limiter.limiter != Limiter::none;
+  const auto* weights = geometry.weights.data();
+  const auto* offsets = geometry.offsets.data();
+  const Index *stencil = mesh.stencil.data(), *cell_faces = mesh.cell_faces.data();
   for (std::size_t c = begin; c < end; ++c) {
-    const Values<D> own = pass.values[c];
-    Gradient<D> gradient{};
+    const auto own = row_of<D>(values[c]);
+    Slopes<D> slopes{};
     Spread<D> spread;
     const auto last = static_cast<std::size_t>(mesh.stencil_begin[c + 1]);
-    for (auto e = static_cast<std::size_t>(mesh.stencil_begin[c]); e < last; ++e) {
-      const auto& other = pass.values[static_cast<std::size_t>(mesh.stencil[e])];
-      const auto& weight = pass.geometry.weights[e];
-      Values<D> jump;
-      for (std::size_t v = 0; v < n; ++v) jump[v] = other[v] - own[v];
-      for (int d = 0; d < D; ++d)
-        for (std::size_t v = 0; v < n; ++v) gradient[d][v] += weight[d] * jump[v];
-      for (std::size_t v = 0; v < n; ++v) spread.below[v] = jump[v] < spread.below[v] ? jump[v] : spread.below[v];
-      for (std::size_t v = 0; v < n; ++v) spread.above[v] = jump[v] > spread.above[v] ? jump[v] : spread.above[v];
-    }
+    for (auto e = static_cast<std::size_t>(mesh.stencil_begin[c]); e < last; ++e)
+      add_to_gradient<D>(weights[e], row_of<D>(values[static_cast<std::size_t>(stencil[e])]) - own, slopes, spread);
     if (is_limited) {
       const auto first = static_cast<std::size_t>(mesh.cell_face_begin[c]);
       const auto n_faces = static_cast<std::size_t>(mesh.cell_face_begin[c + 1]) - first;
       limit_gradient<D>(
-          pass.limiter, pass.geometry.volume[c], spread, n_faces,
-          [&](std::size_t k) -> const std::array<double, D>& {
-            const Index code = mesh.cell_faces[first + k];
-            const auto& offsets = pass.geometry.offsets[static_cast<std::size_t>(code / 2)];
-            return code % 2 == 0 ? offsets.owner : offsets.neighbour;
+          limiter, geometry.volume[c], spread, n_faces,
+          [=](std::size_t k) __attribute__((always_inline))->const std::array<double, D>& {
+            const auto code = static_cast<std::size_t>(cell_faces[first + k]);
+            return offsets[code / 2][code % 2];
           },
-          gradient);
+          slopes);
     }
-    pass.gradients[c] = gradient;
+    for (std::size_t d = 0; d < D; ++d) put_row<D>(slopes[d], gradients[c][d]);
   }
 }
-
-#if defined(__x86_64__)
-// All variables of a cell at a time; the bits are the same, see flux.cpp.
-template <int D>
-[[gnu::target("avx2")]] void find_gradients_wide(const GradientPass<D>& pass, std::size_t begin, std::size_t end)
-{
-  find_gradients_loop<D>(pass, begin, end);
-}
-#endif
 
 } // namespace
 
 template <int D> void Solver<D>::find_values(Part& part, std::span<const Values<D>> amounts)
 {
-  for (std::size_t c = part.begin; c < part.end; ++c) {
-    values_[c] = primitive<D>(scheme_.gas, amounts[c], geometry_.volume[c]);
-    if (!is_gas<D>(values_[c]) && part.bad_cell < 0) {
-      part.bad_cell = static_cast<Index>(c);
-      next_values_[c] = values_[c];
-    }
-  }
+  run_with(
+      scheme_.width, [&](auto n) __attribute__((always_inline)) {
+        constexpr int N = n;
+        const double* volumes = geometry_.volume.data();
+        for (std::size_t first = part.begin; first < part.end; first += N) {
+          const auto cells = numbers_from<N>(first, part.end);
+          std::array<Row<D>, N> rows;
+          Lanes<N> volume;
+          for (std::size_t i = 0; i < N; ++i) {
+            rows[i] = row_of<D>(amounts[cells[i]]);
+            volume[i] = volumes[cells[i]];
+          }
+          const auto w = primitive<D>(scheme_.gas, turned<n_values<D>, Row<D>, N>(rows), volume);
+          rows = turned_back<D, N>(w);
+          for (std::size_t i = 0; i < N; ++i) put_row<D>(rows[i], values_[cells[i]]);
+          if (any(~((w[0] > 0.0) & (w[D + 1] > 0.0))) && part.bad_cell < 0) [[unlikely]]
+            for (const auto c : cells)
+              if (!is_gas<D>(values_[c]) && part.bad_cell < 0) {
+                part.bad_cell = static_cast<Index>(c);
+                next_values_[c] = values_[c];
+              }
+        }
+      });
 }
 
 template <int D> void Solver<D>::find_planes(const Part& part, const Step& step, const Stage& stage)
 {
-  const auto end = static_cast<std::size_t>(mesh_.face_begin[part.end]);
-  for (auto f = static_cast<std::size_t>(mesh_.face_begin[part.begin]); f < end; ++f) {
-    const auto& nodes = mesh_.face_nodes[f];
-    const auto near = sweep_of<D>(nodes, *step.x, *step.v, stage.near_part * step.dt);
-    Vec<D> area = stage.near * near.area;
-    double rate = stage.near * near.volume / (stage.near_part * step.dt);
-    if (stage.far != 0.0) {
-      const auto far = sweep_of<D>(nodes, *step.x, *step.v, stage.far_part * step.dt);
-      area += stage.far * far.area;
-      rate += stage.far * far.volume / (stage.far_part * step.dt);
-    }
-    geometry_.planes[f] = plane_of<D>(area, rate);
-  }
+  run_with(
+      scheme_.width, [&](auto n) __attribute__((always_inline)) {
+        planes_of<D, n>(mesh_, *step.x, *step.v, step.dt, stage, static_cast<std::size_t>(mesh_.face_begin[part.begin]),
+                        static_cast<std::size_t>(mesh_.face_begin[part.end]), geometry_.planes.data());
+      });
 }
 
 template <int D> void Solver<D>::find_gradients(const Part& part)
 {
-  const GradientPass<D> pass{mesh_, geometry_, scheme_.limiter, values_, gradients_};
-#if defined(__x86_64__)
-  static const bool is_wide = __builtin_cpu_supports("avx2") != 0;
-  if (is_wide && scheme_.width == Width::best) return find_gradients_wide<D>(pass, part.begin, part.end);
-#endif
-  find_gradients_loop<D>(pass, part.begin, part.end);
+  run_with(
+      scheme_.width, [&](auto) __attribute__((always_inline)) {
+        gradients_of<D>(mesh_, geometry_, scheme_.limiter, values_.data(), part.begin, part.end, gradients_.data());
+      });
 }
 
 template <int D> void Solver<D>::find_courant(Part& part, const Step& step)
 {
   part.courant = 0.0;
   part.courant_cell = -1;
-  for (std::size_t c = part.begin; c < part.end; ++c) {
-    const auto& w = values_[c];
-    const double sound = sound_speed<D>(scheme_.gas, w);
-    double sum = 0.0; // lambda = 1/2 sum (|u_n - s| + c) A
-    for (auto k = mesh_.cell_face_begin[c]; k < mesh_.cell_face_begin[c + 1]; ++k) {
-      const auto& plane = geometry_.planes[static_cast<std::size_t>(mesh_.cell_faces[static_cast<std::size_t>(k)] / 2)];
-      sum += (std::abs(along<D>(w, plane.normal.data()) - plane.speed) + sound) * plane.area;
-    }
-    const double per_step = 0.5 * sum / geometry_.volume[c];
-    if (step.courant > 0.0) local_dt_[c] = step.courant / per_step;
-    const double courant = step.courant > 0.0 ? step.courant : per_step * step.dt;
-    if (!(courant <= part.courant)) { // also not-a-number
-      part.courant = courant;
-      part.courant_cell = static_cast<Index>(c);
-    }
-  }
+  run_with(
+      scheme_.width, [&](auto n) __attribute__((always_inline)) {
+        constexpr int N = n;
+        using Pack = Lanes<N>;
+        const auto* planes = geometry_.planes.data();
+        for (std::size_t first = part.begin; first < part.end; first += N) {
+          const auto cells = numbers_from<N>(first, part.end);
+          std::array<Row<D>, N> rows;
+          Numbers<N> begin, n_faces;
+          std::size_t most = 0;
+          Pack volume;
+          for (std::size_t i = 0; i < N; ++i) {
+            const auto c = cells[i];
+            rows[i] = row_of<D>(values_[c]);
+            volume[i] = geometry_.volume[c];
+            begin[i] = static_cast<std::size_t>(mesh_.cell_face_begin[c]);
+            n_faces[i] = static_cast<std::size_t>(mesh_.cell_face_begin[c + 1]) - begin[i];
+            most = std::max(most, n_faces[i]);
+          }
+          const auto w = turned<n_values<D>, Row<D>, N>(rows);
+          const Pack sound = root<Pack>(scheme_.gas.gamma * w[D + 1] / w[0]);
+          Pack sum{}; // lambda = 1/2 sum (|u_n - s| + c) A
+          for (std::size_t k = 0; k < most; ++k) {
+            Pack is_face;
+            for (std::size_t i = 0; i < N; ++i) {
+              const auto at = begin[i] + (k < n_faces[i] ? k : 0);
+              rows[i] = plane_row<D>(planes[static_cast<std::size_t>(mesh_.cell_faces[at]) / 2]);
+              is_face[i] = k < n_faces[i] ? 1.0 : 0.0;
+            }
+            const auto plane = turned<D + 2, Row<D>, N>(rows);
+            Pack relative = -plane[D + 1];
+            for (std::size_t d = 0; d < D; ++d) relative += w[d + 1] * plane[d];
+            sum += (size_of<Pack>(relative) + sound) * (plane[D] * is_face);
+          }
+          const Pack per_step = 0.5 * sum / volume;
+          const Pack courant = step.courant > 0.0 ? Pack{} + step.courant : per_step * step.dt;
+          for (std::size_t i = 0; i < N && step.courant > 0.0; ++i) local_dt_[cells[i]] = step.courant / per_step[i];
+          if (any(~(courant <= part.courant))) // also not-a-number
+            for (std::size_t i = 0; i < N; ++i)
+              if (!(courant[i] <= part.courant)) {
+                part.courant = courant[i];
+                part.courant_cell = static_cast<Index>(cells[i]);
+              }
+        }
+      });
 }
 
-template <int D> void Solver<D>::gather(Part& part, std::size_t k, std::size_t face, std::size_t owner)
+template <int D>
+template <std::size_t N>
+void Solver<D>::set_beside(const std::array<std::size_t, N>& faces, FaceStates<D, Lanes<N>>& states) const
 {
-  auto& batch = part.batch;
-  const bool is_second = scheme_.order == 2;
-  const auto& plane = geometry_.planes[face];
-  batch.area[k] = plane.area;
-  batch.speed[k] = plane.speed;
-  for (int d = 0; d < D; ++d) batch.normal[d][k] = plane.normal[d];
-  const auto left =
-      is_second ? value_at<D>(values_[owner], gradients_[owner], geometry_.offsets[face].owner) : values_[owner];
-  for (std::size_t v = 0; v < n_values<D>; ++v) batch.left[v][k] = left[v];
-  const Index other = mesh_.neighbour[face];
-  if (other >= 0) {
-    const auto n = static_cast<std::size_t>(other);
-    const auto right =
-        is_second ? value_at<D>(values_[n], gradients_[n], geometry_.offsets[face].neighbour) : values_[n];
-    for (std::size_t v = 0; v < n_values<D>; ++v) batch.right[v][k] = right[v];
-    return;
-  }
-  const auto b = static_cast<std::size_t>(-1 - other);
-  const auto& condition = conditions_[static_cast<std::size_t>(mesh_.boundary[b].patch)];
-  const auto& right = condition.kind == Kind::far_field    ? condition.state
-                      : condition.kind == Kind::prescribed ? prescribed_[b]
-                                                           : left; // replaced below
-  for (std::size_t v = 0; v < n_values<D>; ++v) batch.right[v][k] = right[v];
-  if (!is_upwinded(condition.kind)) part.boundary[part.n_boundary++] = {k, b};
-}
-
-template <int D> void Solver<D>::flux_between(Part& part, std::size_t n)
-{
-  auto& batch = part.batch;
-  if (scheme_.flux == Flux::hllc) hllc_fluxes<D>(scheme_.gas, batch, n, scheme_.width);
-  else roe_fluxes<D>(scheme_.gas, batch, n);
-  for (std::size_t i = 0; i < part.n_boundary; ++i) {
-    const auto [k, b] = part.boundary[i];
+  for (std::size_t i = 0; i < N; ++i) {
+    const Index other = mesh_.neighbour[faces[i]];
+    if (other >= 0) continue;
+    const auto b = static_cast<std::size_t>(-1 - other);
     const auto& condition = conditions_[static_cast<std::size_t>(mesh_.boundary[b].patch)];
-    const auto& plane = geometry_.planes[static_cast<std::size_t>(mesh_.boundary[b].face)];
+    for (std::size_t v = 0; v < n_values<D>; ++v)
+      states.right[v][i] = condition.kind == Kind::far_field    ? condition.state[v]
+                           : condition.kind == Kind::prescribed ? prescribed_[b][v]
+                                                                : states.left[v][i]; // its flux is replaced
+  }
+}
+
+template <int D>
+template <std::size_t N>
+void Solver<D>::set_fluxes(const std::array<std::size_t, N>& faces, const FaceStates<D, Lanes<N>>& states,
+                           std::array<Lanes<N>, n_values<D>>& fluxes)
+{
+  for (std::size_t i = 0; i < N; ++i) {
+    const Index other = mesh_.neighbour[faces[i]];
+    if (other >= 0) continue;
+    const auto b = static_cast<std::size_t>(-1 - other);
+    const auto& condition = conditions_[static_cast<std::size_t>(mesh_.boundary[b].patch)];
+    if (is_upwinded(condition.kind)) continue;
+    const auto& plane = geometry_.planes[faces[i]];
     Values<D> w;
-    for (std::size_t v = 0; v < w.size(); ++v) w[v] = batch.left[v][k];
+    for (std::size_t v = 0; v < w.size(); ++v) w[v] = states.left[v][i];
     if (condition.kind == Kind::wall)
       stage_pressure_[b] = wall_pressure<D>(scheme_.gas, w, along<D>(w, plane.normal.data()) - plane.speed);
     const auto flux = boundary_flux<D>(scheme_.gas, condition, w, plane.normal.data(), plane.speed);
-    for (std::size_t v = 0; v < w.size(); ++v) batch.flux[v][k] = flux[v] * plane.area;
+    for (std::size_t v = 0; v < w.size(); ++v) fluxes[v][i] = flux[v] * plane.area;
+  }
+}
+
+template <int D>
+template <int N, bool is_second, Flux flux>
+MULLION_INLINE void Solver<D>::sweep_loop(Part& part, const Step& step, const Stage& stage)
+{
+  const FaceArrays<D> in{values_.data(),           gradients_.data(),  geometry_.planes.data(),
+                         geometry_.offsets.data(), mesh_.owner.data(), mesh_.neighbour.data()};
+  const bool is_moving = step.v != nullptr;
+  const Gas gas = scheme_.gas;
+  Values<D>* const residuals = part.residuals.data();
+  double* const swept = part.swept.data();
+  const std::size_t mask = part.residuals.size() - 1;
+  const auto add = [=](std::size_t cell, const Row<D>& row) __attribute__((always_inline))
+  {
+    auto& residual = residuals[cell & mask];
+    put_row<D>(row_of<D>(residual) + row, residual);
+  };
+
+  // Faces to add up, the first `count` of them; those of a halo enter their neighbours only.
+  const auto add_faces = [&](const Numbers<N>& faces, std::size_t count, bool is_own) __attribute__((always_inline))
+  {
+    auto states = states_at<D, N, is_second>(in, faces);
+    Index lowest = 0;
+    for (const auto f : faces) lowest = std::min(lowest, in.neighbour[f]);
+    if (lowest < 0) [[unlikely]] { // copies: what a function has the address of does not stay in registers
+      auto changed = states;
+      set_beside<N>(faces, changed);
+      states = changed;
+    }
+    auto fluxes = flux == Flux::hllc ? hllc_flux<D, Lanes<N>>(gas, states) : roe_flux<D, Lanes<N>>(gas, states);
+    if (lowest < 0) [[unlikely]] {
+      const auto met = states;
+      auto changed = fluxes;
+      set_fluxes<N>(faces, met, changed);
+      fluxes = changed;
+    }
+    const auto rows = turned_back<D, N>(fluxes);
+    const Lanes<N> through = states.speed * states.area;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto owner = static_cast<std::size_t>(in.owner[faces[i]]);
+      const Index other = in.neighbour[faces[i]];
+      const bool is_mine = other >= 0 && static_cast<std::size_t>(other) < part.end;
+      if (is_own) add(owner, rows[i]);
+      if (is_mine) add(static_cast<std::size_t>(other), -rows[i]);
+      if (is_moving) {
+        if (is_own) swept[owner & mask] += through[i];
+        if (is_mine) swept[static_cast<std::size_t>(other) & mask] -= through[i];
+      }
+    }
+  };
+
+  for (std::size_t first = 0; first < part.halo.size(); first += N) { // lower faces than all of its own
+    const auto at = numbers_from<N>(first, part.halo.size());
+    Numbers<N> faces;
+    for (std::size_t i = 0; i < N; ++i) faces[i] = static_cast<std::size_t>(part.halo[at[i]]);
+    add_faces(faces, std::min<std::size_t>(N, part.halo.size() - first), false);
+  }
+  for (std::size_t cell = part.begin; cell < part.end; cell += sweep_block) {
+    const auto cells_end = std::min(cell + sweep_block, part.end);
+    const auto faces_end = static_cast<std::size_t>(mesh_.face_begin[cells_end]);
+    auto f = static_cast<std::size_t>(mesh_.face_begin[cell]);
+    for (; f + N <= faces_end; f += N) add_faces(numbers_from<N>(f, f + N), N, true);
+    if (f < faces_end) add_faces(numbers_from<N>(f, faces_end), faces_end - f, true);
+    finish<N>(part, step, stage, cell, cells_end); // all of their faces are in
   }
 }
 
 template <int D> void Solver<D>::sweep(Part& part, const Step& step, const Stage& stage)
 {
-  const auto& batch = part.batch;
-  constexpr std::size_t n = n_values<D>;
-  const auto add = [&](std::size_t cell, double sign, std::size_t k) {
-    auto& residual = residuals_[cell];
-    for (std::size_t v = 0; v < n; ++v) residual[v] += sign * batch.flux[v][k];
-    residual[n] += sign * (batch.speed[k] * batch.area[k]);
+  const auto run = [&]<bool is_second, Flux flux>() {
+    run_with(
+        scheme_.width, [&](auto n)
+                           __attribute__((always_inline)) { sweep_loop<n, is_second, flux>(part, step, stage); });
   };
-  for (std::size_t first = 0; first < part.halo.size(); first += batch.capacity) { // lower faces than all of its own
-    const auto count = std::min(batch.capacity, part.halo.size() - first);
-    part.n_boundary = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      const auto [face, owner] = part.halo[first + k];
-      gather(part, k, static_cast<std::size_t>(face), static_cast<std::size_t>(owner));
-    }
-    flux_between(part, count);
-    for (std::size_t k = 0; k < count; ++k)
-      add(static_cast<std::size_t>(mesh_.neighbour[static_cast<std::size_t>(part.halo[first + k].first)]), -1.0, k);
-  }
-  for (std::size_t cell = part.begin; cell < part.end;) {
-    const std::size_t first_cell = cell;
-    const auto first_face = static_cast<std::size_t>(mesh_.face_begin[cell]);
-    part.n_boundary = 0;
-    std::size_t count = 0;
-    for (; cell < part.end; ++cell) {
-      const auto begin = static_cast<std::size_t>(mesh_.face_begin[cell]);
-      const auto end = static_cast<std::size_t>(mesh_.face_begin[cell + 1]);
-      if (end - first_face > batch.capacity) break;
-      for (std::size_t face = begin; face < end; ++face) gather(part, count++, face, cell);
-    }
-    flux_between(part, count);
-    for (std::size_t c = first_cell, k = 0; c < cell; ++c) {
-      const auto n_faces = static_cast<std::size_t>(mesh_.face_begin[c + 1] - mesh_.face_begin[c]);
-      for (std::size_t i = 0; i < n_faces; ++i, ++k) {
-        add(c, 1.0, k);
-        const Index other = mesh_.neighbour[first_face + k];
-        if (other >= 0 && static_cast<std::size_t>(other) < part.end) add(static_cast<std::size_t>(other), -1.0, k);
-      }
-      finish(part, step, stage, c); // all of its faces are in
-    }
-  }
+  const bool is_hllc = scheme_.flux == Flux::hllc;
+  if (scheme_.order == 2)
+    is_hllc ? run.template operator()<true, Flux::hllc>() : run.template operator()<true, Flux::roe>();
+  else is_hllc ? run.template operator()<false, Flux::hllc>() : run.template operator()<false, Flux::roe>();
 }
 
-template <int D> void Solver<D>::finish(Part& part, const Step& step, const Stage& stage, std::size_t cell)
+template <int D>
+template <int N>
+MULLION_INLINE void Solver<D>::finish(Part& part, const Step& step, const Stage& stage, std::size_t begin,
+                                      std::size_t end)
 {
-  constexpr std::size_t n = n_values<D>;
-  auto& residual = residuals_[cell];
-  const double dt = step.courant > 0.0 ? local_dt_[cell] : step.dt;
-  if (stage.number == 0 && step.courant > 0.0) rates_[cell] = -residual[0] / geometry_.volume[cell];
-  const std::array<double, D + 3>* total = &residual;
-  double part_of_dt = stage.advance;
-  if (stage.sums) {
-    auto& sum = sums_[cell];
-    for (std::size_t v = 0; v <= n; ++v) sum[v] += stage.weight * residual[v];
-    if (stage.is_last) total = &sum;
-  }
-  if (stage.is_last) part_of_dt = 1.0;
-  Values<D> amounts = step.amounts[cell];
-  for (std::size_t v = 0; v < n; ++v) amounts[v] -= part_of_dt * dt * (*total)[v];
-  const double volume = geometry_.volume[cell] + part_of_dt * dt * (*total)[n];
-  residual.fill(0.0);
-  next_values_[cell] = primitive<D>(scheme_.gas, amounts, volume);
-  if (stage.is_last) step.amounts[cell] = amounts;
-  if (part.bad_cell >= 0) return;
-  if (!(volume > 0.0)) {
-    part.bad_cell = static_cast<Index>(cell);
-    part.bad_shape = true;
-    next_values_[cell][0] = volume;
-  } else if (!is_gas<D>(next_values_[cell])) {
-    part.bad_cell = static_cast<Index>(cell);
+  const std::size_t mask = part.residuals.size() - 1;
+  const bool is_moving = step.v != nullptr, is_local = step.courant > 0.0, is_last = stage.is_last;
+  const double part_of_dt = is_last ? 1.0 : stage.advance;
+  const double* const volumes = geometry_.volume.data();
+  Values<D>* const amounts = step.amounts.data();
+  Values<D>* const next = next_values_.data();
+  for (std::size_t first = begin; first < end; first += N) {
+    const auto cells = numbers_from<N>(first, end);
+    const auto count = std::min<std::size_t>(N, end - first);
+    std::array<Row<D>, N> rows;
+    Lanes<N> volume;
+    for (std::size_t i = 0; i < N; ++i) {
+      const auto c = cells[i];
+      const double dt = part_of_dt * (is_local ? local_dt_[c] : step.dt);
+      auto total = row_of<D>(part.residuals[c & mask]);
+      double through = is_moving ? part.swept[c & mask] : 0.0;
+      if (is_local && stage.number == 0) rates_[c] = -total[0] / volumes[c];
+      if (stage.sums) {
+        if (i < count) {
+          put_row<D>(row_of<D>(sums_[c]) + stage.weight * total, sums_[c]);
+          swept_sums_[c] += stage.weight * through;
+        }
+        if (is_last) {
+          total = row_of<D>(sums_[c]);
+          through = swept_sums_[c];
+        }
+      }
+      rows[i] = row_of<D>(amounts[c]) - dt * total;
+      volume[i] = volumes[c] + dt * through;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      put_row<D>(Row<D>{}, part.residuals[cells[i] & mask]);
+      if (is_moving) part.swept[cells[i] & mask] = 0.0;
+      if (is_last) put_row<D>(rows[i], amounts[cells[i]]);
+    }
+    const auto w = primitive<D>(scheme_.gas, turned<n_values<D>, Row<D>, N>(rows), volume);
+    rows = turned_back<D, N>(w);
+    for (std::size_t i = 0; i < count; ++i) put_row<D>(rows[i], next[cells[i]]);
+    const auto is_fine = (volume > 0.0) & (w[0] > 0.0) & (w[D + 1] > 0.0);
+    if (any(~is_fine)) [[unlikely]]
+      for (std::size_t i = 0; i < count && part.bad_cell < 0; ++i) {
+        if (is_fine[i]) continue;
+        part.bad_cell = static_cast<Index>(cells[i]);
+        part.bad_shape = !(volume[i] > 0.0);
+        if (part.bad_shape) next[cells[i]][0] = volume[i];
+      }
   }
 }
 

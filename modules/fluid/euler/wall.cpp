@@ -29,8 +29,9 @@ std::vector<WallFace<D>> wall_faces(const Mesh<D>& mesh, const Scheme<D>& scheme
         mesh, cell, [&](std::size_t c) { return c == cell ? own.centroid : cell_shape(mesh, x, c).centroid; }, ways);
     weights.resize(ways.size());
     gradient_weights<D>(ways.data(), ways.size(), weights.data());
-    Gradient<D> gradient{};
+    Slopes<D> slopes{};
     Spread<D> spread;
+    const auto own_row = row_of<D>(w);
     double bend = 0.0; // sum (c_j . n) (d_j . n)^2
     for (std::size_t k = 0; k < ways.size(); ++k) {
       const auto j = static_cast<std::size_t>(mesh.stencil[static_cast<std::size_t>(mesh.stencil_begin[cell]) + k]);
@@ -38,16 +39,10 @@ std::vector<WallFace<D>> wall_faces(const Mesh<D>& mesh, const Scheme<D>& scheme
       double along_n = 0.0;
       for (int d = 0; d < D; ++d) along_n += weights[k][static_cast<std::size_t>(d)] * n[d];
       bend += along_n * ways[k].dot(n) * ways[k].dot(n);
-      for (std::size_t q = 0; q < w.size(); ++q) {
-        const double jump = other[q] - w[q];
-        for (int d = 0; d < D; ++d)
-          gradient[static_cast<std::size_t>(d)][q] += weights[k][static_cast<std::size_t>(d)] * jump;
-        spread.below[q] = std::min(spread.below[q], jump);
-        spread.above[q] = std::max(spread.above[q], jump);
-      }
+      add_to_gradient<D>(weights[k], row_of<D>(other) - own_row, slopes, spread);
     }
     double g = 0.0;
-    for (int d = 0; d < D; ++d) g += gradient[static_cast<std::size_t>(d)][D + 1] * n[d];
+    for (int d = 0; d < D; ++d) g += slopes[static_cast<std::size_t>(d)][D + 1] * n[d];
 
     auto at_wall = w;
     if (scheme.order == 2) {
@@ -65,8 +60,12 @@ std::vector<WallFace<D>> wall_faces(const Mesh<D>& mesh, const Scheme<D>& scheme
       if (scheme.limiter.limiter != Limiter::none)
         limit_gradient<D>(
             scheme.limiter, own.volume, spread, offsets.size(),
-            [&](std::size_t k) -> const std::array<double, D>& { return offsets[k]; }, gradient);
-      at_wall = value_at<D>(w, gradient, offsets[wall_offset]);
+            [&](std::size_t k) -> const std::array<double, D>& { return offsets[k]; }, slopes);
+      Gradient<D> gradient;
+      for (std::size_t d = 0; d < D; ++d) put_row<D>(slopes[d], gradient[d]);
+      Values<D> there;
+      put_row<D>(value_at<D>(own_row, gradient, offsets[wall_offset]), there);
+      if (is_gas<D>(there)) at_wall = there;
     }
     Vec<D> velocity = Vec<D>::Zero();
     int n_nodes = 0;

@@ -1,12 +1,13 @@
-// Numerical fluxes: consistency, exact contact waves, moving faces, and the same bits with every width of vectors.
+// Numerical fluxes: consistency, exact contact waves, moving faces, and the same bits for one face and for several at a
+// time.
 #include "euler/flux.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <cstring>
-#include <memory>
 #include <random>
+#include <vector>
 
 using namespace mullion::euler;
 
@@ -14,107 +15,111 @@ namespace {
 
 constexpr Gas air{1.4};
 
+using Faces = std::vector<FaceStates<2, double>>;
+using FluxOf = Values<2> (*)(const Gas&, const FaceStates<2, double>&);
+Values<2> hllc(const Gas& gas, const FaceStates<2, double>& face) { return hllc_flux<2, double>(gas, face); }
+Values<2> roe(const Gas& gas, const FaceStates<2, double>& face) { return roe_flux<2, double>(gas, face); }
+
 /// Random states and faces, every wave pattern among them.
-std::unique_ptr<FaceBatch<2>> random_faces(std::size_t n)
+Faces random_faces(std::size_t n)
 {
-  auto batch = std::make_unique<FaceBatch<2>>();
+  Faces faces(n);
   std::mt19937_64 random(11);
   const auto between = [&](double a, double b) {
     return a + (b - a) * static_cast<double>(random() >> 11) / 9007199254740992.0;
   };
-  for (std::size_t k = 0; k < n; ++k) {
-    for (auto* side : {&batch->left, &batch->right}) {
-      (*side)[0][k] = between(0.1, 2.0);
-      (*side)[1][k] = between(-3.0, 3.0);
-      (*side)[2][k] = between(-3.0, 3.0);
-      (*side)[3][k] = between(0.1, 2.0);
-    }
+  for (auto& face : faces) {
+    for (auto* side : {&face.left, &face.right})
+      *side = {between(0.1, 2.0), between(-3.0, 3.0), between(-3.0, 3.0), between(0.1, 2.0)};
     const double angle = between(0.0, 6.28);
-    batch->normal[0][k] = std::cos(angle);
-    batch->normal[1][k] = std::sin(angle);
-    batch->area[k] = between(0.5, 2.0);
-    batch->speed[k] = between(-1.0, 1.0);
+    face.normal = {std::cos(angle), std::sin(angle)};
+    face.area = between(0.5, 2.0);
+    face.speed = between(-1.0, 1.0);
   }
-  return batch;
+  return faces;
 }
-
-using Fluxes = void (*)(const Gas&, FaceBatch<2>&, std::size_t);
-void hllc(const Gas& gas, FaceBatch<2>& batch, std::size_t n) { hllc_fluxes<2>(gas, batch, n); }
 
 } // namespace
 
 TEST_CASE("between equal states each flux is the gas's own")
 {
-  for (const Fluxes fluxes : {Fluxes(hllc), Fluxes(roe_fluxes<2>)}) {
-    auto batch = random_faces(64);
-    batch->right = batch->left;
+  for (const FluxOf flux_of : {hllc, roe})
+    for (auto face : random_faces(64)) {
+      face.right = face.left;
 
-    fluxes(air, *batch, 64);
+      const auto flux = flux_of(air, face);
 
-    for (std::size_t k = 0; k < 64; ++k) {
-      const Values<2> w = {batch->left[0][k], batch->left[1][k], batch->left[2][k], batch->left[3][k]};
-      const double n[] = {batch->normal[0][k], batch->normal[1][k]};
-      const auto exact = physical_flux<2>(air, w, n, batch->speed[k]);
+      const auto exact = physical_flux<2>(air, face.left, face.normal.data(), face.speed);
       for (std::size_t v = 0; v < 4; ++v) // 1e-13: round-off of numbers up to 20
-        CHECK(batch->flux[v][k] == doctest::Approx(exact[v] * batch->area[k]).epsilon(1e-13).scale(10.0));
+        CHECK(flux[v] == doctest::Approx(exact[v] * face.area).epsilon(1e-13).scale(10.0));
     }
-  }
 }
 
 TEST_CASE("a contact that moves with the face passes nothing but pressure")
 {
-  for (const Fluxes fluxes : {Fluxes(hllc), Fluxes(roe_fluxes<2>)}) {
-    auto batch = random_faces(16);
-    for (std::size_t k = 0; k < 16; ++k) {
-      const double nx = batch->normal[0][k], ny = batch->normal[1][k], s = batch->speed[k];
-      batch->right[3][k] = batch->left[3][k];
-      for (auto* side : {&batch->left, &batch->right}) { // slipping along each other as well
-        const double along = (*side)[1][k];
-        (*side)[1][k] = s * nx - along * ny;
-        (*side)[2][k] = s * ny + along * nx;
+  for (const FluxOf flux_of : {hllc, roe})
+    for (auto face : random_faces(16)) {
+      const auto [nx, ny] = face.normal;
+      face.right[3] = face.left[3];
+      for (auto* side : {&face.left, &face.right}) { // slipping along each other as well
+        const double along = (*side)[1];
+        (*side)[1] = face.speed * nx - along * ny;
+        (*side)[2] = face.speed * ny + along * nx;
       }
-    }
 
-    fluxes(air, *batch, 16);
+      const auto flux = flux_of(air, face);
 
-    for (std::size_t k = 0; k < 16; ++k) {
-      const double push = batch->left[3][k] * batch->area[k];
-      CHECK(std::abs(batch->flux[0][k]) < 1e-14); // round-off of u . n - s
-      CHECK(batch->flux[1][k] == doctest::Approx(push * batch->normal[0][k]).epsilon(1e-13).scale(1.0));
-      CHECK(batch->flux[3][k] == doctest::Approx(push * batch->speed[k]).epsilon(1e-13).scale(1.0));
+      const double push = face.left[3] * face.area;
+      CHECK(std::abs(flux[0]) < 1e-14); // round-off of u . n - s
+      CHECK(flux[1] == doctest::Approx(push * nx).epsilon(1e-13).scale(1.0));
+      CHECK(flux[3] == doctest::Approx(push * face.speed).epsilon(1e-13).scale(1.0));
     }
-  }
 }
 
 TEST_CASE("an observer who moves along sees the same flux of mass and a flux of momentum that follows from it")
 {
-  for (const Fluxes fluxes : {Fluxes(hllc), Fluxes(roe_fluxes<2>)}) {
-    auto rest = random_faces(128), moved = random_faces(128);
-    for (std::size_t k = 0; k < 128; ++k) {
-      for (auto* side : {&moved->left, &moved->right}) {
-        (*side)[1][k] += 0.7;
-        (*side)[2][k] -= 0.4;
+  for (const FluxOf flux_of : {hllc, roe})
+    for (const auto& face : random_faces(128)) {
+      auto seen = face;
+      for (auto* side : {&seen.left, &seen.right}) {
+        (*side)[1] += 0.7;
+        (*side)[2] -= 0.4;
       }
-      moved->speed[k] += 0.7 * moved->normal[0][k] - 0.4 * moved->normal[1][k];
-    }
+      seen.speed += 0.7 * face.normal[0] - 0.4 * face.normal[1];
 
-    fluxes(air, *rest, 128);
-    fluxes(air, *moved, 128);
+      const auto rest = flux_of(air, face), moved = flux_of(air, seen);
 
-    for (std::size_t k = 0; k < 128; ++k) {
-      CHECK(moved->flux[0][k] == doctest::Approx(rest->flux[0][k]).epsilon(1e-11).scale(10.0));
-      CHECK(moved->flux[1][k] == doctest::Approx(rest->flux[1][k] + 0.7 * rest->flux[0][k]).epsilon(1e-11).scale(10.0));
+      CHECK(moved[0] == doctest::Approx(rest[0]).epsilon(1e-11).scale(10.0));
+      CHECK(moved[1] == doctest::Approx(rest[1] + 0.7 * rest[0]).epsilon(1e-11).scale(10.0));
     }
-  }
 }
 
-TEST_CASE("HLLC has the same bits with the widest vectors of this processor as with those of every processor")
+TEST_CASE("several faces at a time have the bits of each by itself")
 {
-  auto wide = random_faces(128), narrow = random_faces(128);
+  const auto faces = random_faces(128);
+  for (std::size_t first = 0; first < faces.size(); first += 4) {
+    FaceStates<2, Lanes<4>> several;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto& face = faces[first + i];
+      for (std::size_t v = 0; v < 4; ++v) {
+        several.left[v][i] = face.left[v];
+        several.right[v][i] = face.right[v];
+      }
+      several.normal[0][i] = face.normal[0];
+      several.normal[1][i] = face.normal[1];
+      several.area[i] = face.area;
+      several.speed[i] = face.speed;
+    }
 
-  hllc_fluxes<2>(air, *wide, 127, Width::best); // 127: not a multiple of any width
-  hllc_fluxes<2>(air, *narrow, 127, Width::baseline);
+    const auto by_hllc = hllc_flux<2, Lanes<4>>(air, several), by_roe = roe_flux<2, Lanes<4>>(air, several);
 
-  for (std::size_t v = 0; v < 4; ++v)
-    CHECK(std::memcmp(wide->flux[v].data(), narrow->flux[v].data(), 127 * sizeof(double)) == 0);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto alone_hllc = hllc(air, faces[first + i]), alone_roe = roe(air, faces[first + i]);
+      for (std::size_t v = 0; v < 4; ++v) {
+        const double hllc_lane = by_hllc[v][i], roe_lane = by_roe[v][i];
+        CHECK(std::memcmp(&hllc_lane, &alone_hllc[v], sizeof(double)) == 0);
+        CHECK(std::memcmp(&roe_lane, &alone_roe[v], sizeof(double)) == 0);
+      }
+    }
+  }
 }
