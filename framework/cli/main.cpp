@@ -28,6 +28,7 @@ constexpr Command commands[] = {
     {"run", "CASE [options]", "run a case", &cli::run_run},
     {"check", "CASE [options]", "validate a case without running it", &cli::run_check},
     {"study", "STUDY [options]", "run a matrix of cases, to one table", &cli::run_study},
+    {"mesh", "CASE [options]", "write the meshes of a case without running it", &cli::run_mesh},
     {"transfer-test", "[options]", "how well a transfer does between two meshes", &cli::run_transfer_test},
     {"modules", "[NAME]", "list modules and drivers, or the parameters and fields of one", &cli::run_modules},
     {"report", "DIR", "plots of a run or a study on one page", &cli::run_report},

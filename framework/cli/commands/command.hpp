@@ -25,6 +25,7 @@ public:
 
 int run_run(const Arguments& arguments);           // run.cpp
 int run_check(const Arguments& arguments);         // check.cpp
+int run_mesh(const Arguments& arguments);          // mesh.cpp
 int run_modules(const Arguments& arguments);       // modules.cpp
 int run_study(const Arguments& arguments);         // study.cpp
 int run_transfer_test(const Arguments& arguments); // transfer_test.cpp

@@ -5,6 +5,7 @@
 #include "log/console.hpp"
 #include "report/csv_table.hpp"
 #include "run/checkpoint.hpp"
+#include "run/snapshot.hpp"
 
 #include <mullion/coupling/build_id.hpp>
 #include <mullion/sdk/error.hpp>
@@ -420,40 +421,7 @@ void Recorder::note(std::int64_t step, const std::string& what, const std::strin
 
 // ---- result files ------------------------------------------------------------------------------------------------
 
-std::vector<io::WindowData> Recorder::snapshot(shm::Storage storage) const
-{
-  std::vector<io::WindowData> out;
-  for (std::uint32_t w = 0; w < control_.n_windows; ++w) {
-    if (control_.windows[w].owner != shm::Owner::module) continue;
-    const auto& view = session_->windows().view(w);
-    auto& window = out.emplace_back();
-    window.name = control_.windows[w].name;
-    for (std::uint32_t p = 0; p < view.header().n_panes; ++p) {
-      auto& pane = window.panes.emplace_back();
-      const auto raw = view.pane(p, pane.blocks);
-      pane.id = raw.id;
-      pane.dimension = raw.dimension;
-      pane.n_nodes = raw.n_nodes;
-      pane.n_elements = raw.n_elements;
-      pane.reference_coordinates = raw.coordinates;
-      const auto fields = view.fields();
-      for (std::uint32_t f = 0; f < fields.size(); ++f) {
-        if (fields[f].pane != p || static_cast<shm::Storage>(fields[f].storage) != storage) continue;
-        const auto* data = session_->windows().locate(w, f, 1, control_.epoch.load()).data;
-        io::FieldData field;
-        field.name = fields[f].name;
-        field.unit = fields[f].unit;
-        field.location = fields[f].location;
-        field.components = fields[f].components;
-        field.entities = fields[f].entities;
-        if (fields[f].scalar == MULLION_I32) field.i32 = reinterpret_cast<const std::int32_t*>(data);
-        else field.f64 = reinterpret_cast<const double*>(data);
-        pane.fields.push_back(std::move(field));
-      }
-    }
-  }
-  return out;
-}
+std::vector<io::WindowData> Recorder::snapshot(shm::Storage storage) const { return snapshot_of(*session_, storage); }
 
 // ---- the end -----------------------------------------------------------------------------------------------------
 

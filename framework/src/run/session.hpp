@@ -46,6 +46,10 @@ public:
   // ---- the run loop's side (setup.cpp, session.cpp) ----
   /// Fresh start: spawn, define, wire, attach, start; all levels then hold the initial state.
   void start_fresh();
+  /// Its first part alone: the windows of all modules, in their first state. No module is attached, no driver at work.
+  void define_windows();
+  /// After define_windows(): attach this module, without anything that it receives, so that its functions answer.
+  void attach_alone(const std::string& instance);
   /// The same from a checkpoint: spawn, windows from the file, attach. (session_restore.cpp)
   /// @param changed  modules with other parameters than then: their windows must have the same shape all the same
   /// @throws Error Errc::config: the checkpoint's windows are not those of this case and its plug-ins

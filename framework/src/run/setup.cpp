@@ -42,7 +42,7 @@ Session::~Session()
     if (module.host != nullptr) supervisor_.kill(*module.host);
 }
 
-void Session::start_fresh()
+void Session::define_windows()
 {
   const TimeStep initial{0, case_.start_time, case_.start_time, case_.dt, 0};
   describe_modules();
@@ -52,6 +52,19 @@ void Session::start_fresh()
     call(m, Operation::define, initial);
     adopt_windows(m);
   }
+}
+
+void Session::attach_alone(const std::string& instance)
+{
+  const auto m = find_module(instance);
+  call(m, Operation::attach, {0, case_.start_time, case_.start_time, case_.dt, 0});
+  modules_[m].is_attached = true;
+}
+
+void Session::start_fresh()
+{
+  const TimeStep initial{0, case_.start_time, case_.start_time, case_.dt, 0};
+  define_windows();
   make_companions();
   make_driver_state();
   find_conflicts();

@@ -4,7 +4,6 @@
 
 #include "io/atomic_file.hpp"
 #include "log/console.hpp"
-#include "process/guard.hpp"
 #include "process/run_socket.hpp"
 #include "run/audit.hpp"
 #include "run/commands.hpp"
@@ -15,25 +14,16 @@
 #include "run/session.hpp"
 #include "run/step_clock.hpp"
 #include "run/summary.hpp"
+#include "run/under_guard.hpp"
 
 #include <mullion/sdk/error.hpp>
 
 #include <cstdio>
 #include <filesystem>
 #include <optional>
-#include <unistd.h>
 
 namespace mullion {
 namespace {
-
-void print_error(const std::string& text)
-{
-  log::show_progress("");
-  std::fprintf(stderr, "mullion: error: %s\n", text.c_str());
-}
-
-/// 2 where the command or the case is wrong, 1 where the run failed.
-int exit_code_of(Errc code) { return code == Errc::config || code == Errc::plugin ? 2 : 1; }
 
 /// The steps of the run. @return why it ended early, or ""
 std::string run_steps(const RunOptions& options, run::Session& session, process::Supervisor& supervisor,
@@ -162,20 +152,8 @@ int orchestrate(const RunOptions& options, shm::Control& control, int control_fd
 
 int run_case(const RunOptions& options)
 {
-  log::Level level{};
-  MULLION_REQUIRE(log::parse_level(options.log_level, level), Errc::config,
-                  "--log-level '{}': expected debug, info, warning, error or off", options.log_level);
-  return process::run_guarded([&](shm::Control& control, int control_fd) {
-    try {
-      log::initialise(level, ::isatty(STDERR_FILENO) != 0);
-      return orchestrate(options, control, control_fd);
-    } catch (const Error& error) {
-      print_error(error.what());
-      return exit_code_of(error.code());
-    } catch (const std::exception& error) {
-      print_error(error.what());
-      return 1;
-    }
+  return run::under_guard(options.log_level, [&](shm::Control& control, int control_fd) {
+    return orchestrate(options, control, control_fd);
   });
 }
 

@@ -4,6 +4,7 @@
 #include "saved_state.hpp"
 
 #include "files/file_error.hpp"
+#include "files/hand_out.hpp"
 #include "files/read.hpp"
 
 #include <algorithm>
@@ -598,6 +599,16 @@ double Euler::max_dt()
   place(nodes);
   read_amounts(true);
   return options_.cfl_max * solver_->unit_step(amounts_);
+}
+
+double Euler::write_mesh(double file)
+{
+  return with_code(Errc::io, [&] { return mesh_files::write_mesh_to(options_.mesh, 2, file); });
+}
+
+double Euler::list_boundaries(double file)
+{
+  return with_code(Errc::io, [&] { return mesh_files::list_boundaries_to(options_.mesh, 2, file); });
 }
 
 } // namespace mullion::euler

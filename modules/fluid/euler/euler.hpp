@@ -135,13 +135,18 @@ public:
   static std::vector<InputSpec> inputs();
   static constexpr auto functions()
   {
-    return std::tuple{query("max_dt", &Euler::max_dt, "largest step at the last committed state [s]")};
+    return std::tuple{
+        query("max_dt", &Euler::max_dt, "largest step at the last committed state [s]"),
+        query("write_mesh", &Euler::write_mesh, "with its groups, in Gmsh's format, to an open file; bytes"),
+        query("list_boundaries", &Euler::list_boundaries, "faces and names of its groups, to an open file; lines")};
   }
 
   void define(const TimeStep& initial) override;
   void attach() override;
   void step(const TimeStep& step) override;
   double max_dt();
+  double write_mesh(double file);
+  double list_boundaries(double file);
 
 private:
   using NodeArray = Eigen::Matrix2Xd;

@@ -4,6 +4,7 @@
 #include "initial_states.hpp"
 
 #include "files/file_error.hpp"
+#include "files/hand_out.hpp"
 #include "files/read.hpp"
 
 #include <algorithm>
@@ -95,6 +96,7 @@ std::vector<FieldSpec> ElasticSolid::fields()
       output(v, "position", node, vector, "m", "reference coordinates and displacement"),
       output(v, "stress", element, 6, "Pa", "xx, yy, zz, xy, yz, zx at the centre"),
       output(v, "von_mises", element, scalar, "Pa", "equivalent stress at the centre"),
+      output(v, "shear_stress", element, scalar, "Pa", "stress xy at the centre, by itself"),
       output(v, "energy", pane, scalar, "J", "kinetic and elastic"),
       output(v, "modal_coordinate", pane, n_recorded_modes, "m kg^(1/2)",
              "phi_k^T M u of the lowest modes, phi_k^T M phi_k = 1; 0 beyond the parameter modes"),
@@ -246,6 +248,24 @@ double ElasticSolid::vacuum_frequency(double step)
   return numerical_frequency(omega, step / options_.substeps, newmark_parameters()) / (2.0 * std::numbers::pi);
 }
 
+double ElasticSolid::write_mesh(double file)
+{
+  try {
+    return mesh_files::write_mesh_to(options_.mesh, 0, file);
+  } catch (const mesh_files::FileError& error) {
+    throw Error(Errc::io, error.what());
+  }
+}
+
+double ElasticSolid::list_boundaries(double file)
+{
+  try {
+    return mesh_files::list_boundaries_to(options_.mesh, 0, file);
+  } catch (const mesh_files::FileError& error) {
+    throw Error(Errc::io, error.what());
+  }
+}
+
 // ---- windows
 // ---------------------------------------------------------------------------------------------------------
 
@@ -284,6 +304,7 @@ void ElasticSolid::look_up()
   position_ = field("volume", "position");
   stress_ = field("volume", "stress");
   von_mises_ = field("volume", "von_mises");
+  shear_stress_ = field("volume", "shear_stress");
   energy_ = field("volume", "energy");
   modal_coordinate_ = field("volume", "modal_coordinate");
   monitor_displacement_ = field("volume", "monitor_displacement");
@@ -490,6 +511,7 @@ void ElasticSolid::write_outputs(const Eigen::MatrixXd& wet_load, double t, doub
   dofs(stress) = stress_matrix_ * u.reshaped();
   auto equivalent = von_mises_.now();
   for (Eigen::Index e = 0; e < stress.cols(); ++e) equivalent(0, e) = von_mises(stress.col(e));
+  shear_stress_.now() = stress.row(3); // a picture of a report shows a scalar
   energy_.now()(0, 0) = energy(system_.mass, motion.velocity) + energy(system_.stiffness, motion.displacement);
   auto q = modal_coordinate_.now();
   q.setZero();

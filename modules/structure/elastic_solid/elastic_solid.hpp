@@ -109,7 +109,10 @@ public:
         query("max_dt", &ElasticSolid::max_dt, "largest stable coupling step of the integrator [s]"),
         query("frequency", &ElasticSolid::frequency, "of a mode without a load [Hz]; 1 is the lowest"),
         query("vacuum_frequency", &ElasticSolid::vacuum_frequency,
-              "lowest frequency without a load [Hz], as the integrator runs it in coupling steps of so many s")};
+              "lowest frequency without a load [Hz], as the integrator runs it in coupling steps of so many s"),
+        query("write_mesh", &ElasticSolid::write_mesh, "with its groups, in Gmsh's format, to an open file; bytes"),
+        query("list_boundaries", &ElasticSolid::list_boundaries,
+              "faces and names of its groups, to an open file; lines")};
   }
 
   void define(const TimeStep& initial) override;
@@ -120,6 +123,8 @@ public:
   double max_dt();
   double frequency(double mode);
   double vacuum_frequency(double step);
+  double write_mesh(double file);
+  double list_boundaries(double file);
 
 private:
   void make_windows();
@@ -165,7 +170,8 @@ private:
   std::optional<Modes> modes_;
   std::optional<double> critical_step_;
 
-  Field displacement_, velocity_, acceleration_, position_, stress_, von_mises_, energy_, modal_coordinate_;
+  Field displacement_, velocity_, acceleration_, position_, stress_, von_mises_, shear_stress_, energy_,
+      modal_coordinate_;
   Field monitor_displacement_;
   Field wet_displacement_, wet_velocity_, wet_acceleration_, applied_load_, steady_load_, work_, impulse_;
   Input traction_, load_;
