@@ -57,10 +57,15 @@ double load_of_waves(const std::vector<WallPiece>& wall, double depth, double om
 }
 
 /// An arch of Jaiman et al. 2011, section 6.3.
-Radiation radiation_of_arch(const std::string& mesh, int mode, const Duct& duct, double* hertz = nullptr)
+Radiation radiation_of_arch(const std::string& mesh, int mode, const Duct& duct)
 {
-  const auto body = body_of(mesh_files::read_or_generate(mesh), {.wet = "wet", .clamped = "start, end"});
-  Solid solid{.nodes = body.nodes, .blocks = body.blocks};
+  GroupTexts groups;
+  groups.wet = "wet";
+  groups.clamped = "start, end";
+  const auto body = body_of(mesh_files::read_or_generate(mesh), groups);
+  Solid solid;
+  solid.nodes = body.nodes;
+  solid.blocks = body.blocks;
   solid.material = {.youngs_modulus = 70.0e9, .poisson_ratio = 0.3, .density = 2600.0, .plane = Plane::stress};
   solid.formulation = Formulation::enhanced;
   System system{.stiffness = stiffness_matrix(solid), .mass = mass_matrix(solid, MassKind::consistent)};
@@ -69,7 +74,6 @@ Radiation radiation_of_arch(const std::string& mesh, int mode, const Duct& duct,
   const auto modes = lowest_modes(system, mode);
   REQUIRE(modes.complaint == "");
   const double omega = modes.angular_frequencies[mode - 1];
-  if (hertz != nullptr) *hertz = omega / (2.0 * pi);
   const auto wall = wall_of(solid.nodes(Eigen::all, body.wet_nodes), surface_of_blocks(body.wet),
                             modes.shapes.col(mode - 1).reshaped(2, solid.n_nodes())(Eigen::all, body.wet_nodes));
   return duct_radiation(wall, 1.0, omega, duct);
@@ -161,7 +165,6 @@ TEST_CASE("the arches of the paper radiate as another program says")
   const auto g05 = radiation_of_arch("arch:48x1,length=0.92437,thickness=0.004,angle=12", 2, duct);
   CHECK(std::abs(g05.growth / -1.44 - 1.0) < 0.015);
   CHECK(std::abs(g05.shift - -2.4) < 0.05 + 0.015 * 2.4);
-  MESSAGE("G25 ", g25.growth, " 1/s, ", g25.shift, " Hz; G05 ", g05.growth, " 1/s, ", g05.shift, " Hz");
 }
 
 TEST_CASE("an upright wall is no floor")
