@@ -69,8 +69,8 @@ const Sets iss = {"driver.scheme=iss", "driver.w_end=false"};
 const Sets cibc_recipe = {"driver.scheme=cibc",   "driver.half_offset=true",  "driver.w_end=false",
                           "fluid.gradient=cell",  "driver.fluid_density=1.3", "driver.acceleration=difference",
                           "driver.omega=0.00075", "driver.omega_check=warn"};
-/// Irregular triangles, 20 faces on the arch; in steps of 10 us the Courant numbers are 1.85 and 1.64. Triangles without
-/// a limiter ran at 2.2 and not at 2.6: the limit for squares, 1.35, is not theirs.
+/// Irregular triangles, 20 faces on the arch; in steps of 10 us the Courant numbers are 1.85 and 1.64. Triangles
+/// without a limiter ran at 2.2 and not at 2.6: the limit for squares, 1.35, is not theirs.
 const Sets irregular_box = {"fluid.mesh=box_arch:20x10,delaunay,length=0.34795,thickness=0.006,angle=15,height=0.2,"
                             "growth=1.04,perturb=0.2",
                             "fluid.cfl_max=2.2", "fluid.cfl_warn=2.1"};
@@ -78,8 +78,8 @@ const Sets irregular_duct = {"fluid.mesh=duct_arch:20x36,delaunay,length=0.34795
                              "growth=1.06,largest=0.06,left=-2.2,right=2.5,perturb=0.15",
                              "fluid.cfl_max=2.2", "fluid.cfl_warn=2.1"};
 
-/// What a lag of `lag` seconds adds to the rate: omega tau (2 pi shift), of the frequency that the neutral scheme has on
-/// the same mesh; in vacuo 574.199 Hz as Newmark's method runs it in steps of 10 us.
+/// What a lag of `lag` seconds adds to the rate: omega tau (2 pi shift), of the frequency that the neutral scheme has
+/// on the same mesh; in vacuo 574.199 Hz as Newmark's method runs it in steps of 10 us.
 double lag_law(double frequency, double lag)
 {
   constexpr double two_pi = 2.0 * std::numbers::pi;
@@ -268,11 +268,11 @@ TEST_SUITE("full")
   {
     // The second mode, 115 Hz. A flat wall radiates 1.44 1/s, the other program found 1.6: bounds that both meet, and
     // that neither growth nor G25's rate does.
-    const auto rate = rate_of("flow_shell",
-                              css + Sets{"run.end_time=0.06",
-                                         "fluid.mesh=duct_arch:62x52,length=0.92437,thickness=0.004,angle=12",
-                                         "structure.mesh=arch:48x1,length=0.92437,thickness=0.004,angle=12"},
-                              1, 0.05);
+    const auto rate =
+        rate_of("flow_shell",
+                css + Sets{"run.end_time=0.06", "fluid.mesh=duct_arch:62x52,length=0.92437,thickness=0.004,angle=12",
+                           "structure.mesh=arch:48x1,length=0.92437,thickness=0.004,angle=12"},
+                1, 0.05);
     CHECK(rate.sigma > -2.0);
     CHECK(rate.sigma < -1.3);
   }

@@ -40,7 +40,9 @@ bool read_call(std::string_view text, FunctionCall& call)
 {
   const auto open = text.find('('), dot = text.rfind('.', open);
   if (open == std::string_view::npos || dot == std::string_view::npos || !text.ends_with(')')) return false;
-  call = {std::string(trimmed(text.substr(0, dot))), std::string(trimmed(text.substr(dot + 1, open - dot - 1))), {},
+  call = {std::string(trimmed(text.substr(0, dot))),
+          std::string(trimmed(text.substr(dot + 1, open - dot - 1))),
+          {},
           std::string(text)};
   const auto inside = trimmed(text.substr(open + 1, text.size() - open - 2));
   if (inside.empty()) return true;
@@ -61,7 +63,8 @@ FunctionCalls parse_function_calls(const std::string& text)
   for (const auto& part : parts_of(text, ';')) {
     FunctionCall call;
     if (!read_call(part, call))
-      return {{}, fmt::format("\"{}\" is no call; expected module.function(number, …), with ';' between several", part)};
+      return {{},
+              fmt::format("\"{}\" is no call; expected module.function(number, …), with ';' between several", part)};
     out.calls.push_back(std::move(call));
   }
   return out;

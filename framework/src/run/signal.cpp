@@ -46,6 +46,9 @@ std::size_t n_uniform(std::span<const double> times)
   return std::abs(times[n - 1] - times[0] - static_cast<double>(n - 1) * step) <= tolerance ? n : n - 1;
 }
 
+/// What is left of a drift looks like one period and a half.
+constexpr double fewest_periods = 1.9;
+
 /// So many periods per record from a peak, the Hann window's side lobes are below 1/300 of it: what is higher there is
 /// another oscillation, what is higher nearer by may be a side lobe.
 constexpr double main_lobe = 4.0;
@@ -285,14 +288,14 @@ std::vector<SpectralPeak> spectral_peaks(std::span<const double> times, std::spa
     std::size_t best = 0;
     for (std::size_t k = 1; k < spectrum.size(); ++k) {
       const double there = std::norm(spectrum[k]);
-      const bool is_top = there >= std::norm(spectrum[k - 1]) &&
-                          (k + 1 == spectrum.size() || there >= std::norm(spectrum[k + 1]));
-      // the strongest point, whether it is a top or not: what is left of a drift must not be passed over
-      if ((peaks.empty() || is_top) && is_new(peaks, k) && (best == 0 || there > std::norm(spectrum[best]))) best = k;
+      const bool is_top =
+          there >= std::norm(spectrum[k - 1]) && (k + 1 == spectrum.size() || there >= std::norm(spectrum[k + 1]));
+      const bool is_next = is_top && static_cast<double>(k) * width >= fewest_periods && is_new(peaks, k);
+      if ((peaks.empty() || is_next) && (best == 0 || there > std::norm(spectrum[best]))) best = k;
     }
     if (best == 0) break;
     const double periods = refine(signal, static_cast<double>(best) * width, width);
-    if (periods < 1.9) break; // what is left of a drift looks like one period and a half
+    if (periods < fewest_periods) break;
     peaks.push_back({periods, std::sqrt(spectrum_at(signal, periods / static_cast<double>(n)).value)});
   }
   for (auto& peak : peaks) peak.frequency /= static_cast<double>(n) * step;

@@ -34,7 +34,7 @@ struct SpectralPeak {
 /// within four periods per record of a higher top is left out: it may be the window's side lobe.
 ///
 /// @param n_peaks  at most so many
-/// @return         fewer where there are no more with 1.9 periods and above
+/// @return         of 1.9 periods and above; none if the highest of all is below, as dominant_frequency finds none then
 /// @throws Error   as dominant_frequency
 [[nodiscard]] std::vector<SpectralPeak> spectral_peaks(std::span<const double> times, std::span<const double> values,
                                                        std::size_t n_peaks);

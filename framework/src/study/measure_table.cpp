@@ -73,7 +73,8 @@ constexpr const char* default_iterations = "driver.iterations";
 bool takes(const Kind& kind, std::string_view key)
 {
   if (key == "name" || key == "kind" || key == "unit" || key == "scale") return true;
-  if (key == "from" || key == "to") return kind.name != "wall_time" && kind.name != "steps" && kind.name != "function"; // of the whole run
+  if (key == "from" || key == "to")
+    return kind.name != "wall_time" && kind.name != "steps" && kind.name != "function"; // of the whole run
   for (auto rest = kind.keys; !rest.empty();) {
     const auto end = std::min(rest.find(' '), rest.size());
     if (rest.substr(0, end) == key) return true;

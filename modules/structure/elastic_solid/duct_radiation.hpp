@@ -6,9 +6,9 @@
 // displaces the gas by w(x) q(t) along y, phi^T M phi = 1. From the linearised equations of a
 // uniform flow (waves in ducts: [`rienstra2004`], chapter 7)
 //
-//     q'' + omega_s^2 q = -K(omega_s) q,    to first order in the gas: omega = omega_s + K/(2 omega_s), sigma = Im omega
-//     K(omega) = b/(2 pi) int rho (omega - U k)^2 cot(alpha H)/alpha |w^(k)|^2 dk,
-//     alpha^2 = (omega - U k)^2/c^2 - k^2,    w^(k) = int w(x) exp(-i k x) dx,    omega -> omega + i 0,    ~ exp(-i omega t)
+//     q'' + omega_s^2 q = -K(omega_s) q,    to first order in the gas: omega = omega_s + K/(2 omega_s), sigma = Im
+//     omega K(omega) = b/(2 pi) int rho (omega - U k)^2 cot(alpha H)/alpha |w^(k)|^2 dk, alpha^2 = (omega - U k)^2/c^2
+//     - k^2,    w^(k) = int w(x) exp(-i k x) dx,    omega -> omega + i 0,    ~ exp(-i omega t)
 //
 // The poles on the real axis are the waves that travel along the duct, two for each number n of nodes across it with
 // omega/c > sqrt(1 - M^2) n pi/H; what they carry away is the imaginary part of K. Curvature of the wall and what its

@@ -234,8 +234,8 @@ Modes ElasticSolid::modes_to(double mode, const char* function)
                   Errc::config, "{}({}): modes are numbered from 1 to {}", function, mode, system_.free.size());
   const int k = static_cast<int>(mode);
   auto found = k <= modes().angular_frequencies.size() ? modes() : lowest_modes(system_, k);
-  MULLION_REQUIRE(k <= found.angular_frequencies.size(), Errc::numeric,
-                  "{}({}): the modal analysis did not converge", function, mode);
+  MULLION_REQUIRE(k <= found.angular_frequencies.size(), Errc::numeric, "{}({}): the modal analysis did not converge",
+                  function, mode);
   return found;
 }
 
@@ -265,7 +265,8 @@ Radiation ElasticSolid::radiation(const char* function, double mode, const Duct&
   const auto k = static_cast<Eigen::Index>(mode) - 1;
   MULLION_REQUIRE(found.angular_frequencies[k] > 0.0, Errc::config, "{}({}): that is a rigid motion", function, mode);
   const Eigen::MatrixXd nodes = solid_.nodes(Eigen::all, wet_nodes_);
-  const auto wall = wall_of(nodes, wet_surface_, found.shapes.col(k).reshaped(2, solid_.n_nodes())(Eigen::all, wet_nodes_));
+  const auto wall =
+      wall_of(nodes, wet_surface_, found.shapes.col(k).reshaped(2, solid_.n_nodes())(Eigen::all, wet_nodes_));
   MULLION_REQUIRE(!wall.empty(), Errc::config,
                   "{}: the wet surface is no floor: there it is upright, and its displacement along y unbounded",
                   function);

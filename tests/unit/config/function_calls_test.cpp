@@ -10,7 +10,8 @@ using namespace mullion::config;
 
 TEST_CASE("calls are split at semicolons, their numbers at commas")
 {
-  const auto found = parse_function_calls(" structure.frequency( 1 ); solid-2.radiation_rate(2, 1.25, -1e2,0.5) ;fluid.max_dt()");
+  const auto found =
+      parse_function_calls(" structure.frequency( 1 ); solid-2.radiation_rate(2, 1.25, -1e2,0.5) ;fluid.max_dt()");
 
   CHECK(found.complaint == "");
   REQUIRE(found.calls.size() == 3);
@@ -26,11 +27,13 @@ TEST_CASE("calls are split at semicolons, their numbers at commas")
 
 TEST_CASE("what is no call is told with its text")
 {
-  for (const std::string wrong : {"structure.frequency", "frequency(1)", "structure.frequency(1", "structure.frequency(one)",
-                                  "structure.frequency(1,)", "structure.frequency(nan)", "structure.frequency(1) 2"}) {
+  for (const std::string wrong :
+       {"structure.frequency", "frequency(1)", "structure.frequency(1", "structure.frequency(one)",
+        "structure.frequency(1,)", "structure.frequency(nan)", "structure.frequency(1) 2"}) {
     const auto found = parse_function_calls("fluid.max_dt(); " + wrong);
     CHECK(found.calls.empty());
-    CHECK(found.complaint == "\"" + wrong + "\" is no call; expected module.function(number, …), with ';' between several");
+    CHECK(found.complaint ==
+          "\"" + wrong + "\" is no call; expected module.function(number, …), with ';' between several");
   }
   CHECK(parse_function_calls("fluid.max_dt();").complaint.starts_with("\"\" is no call"));
 }

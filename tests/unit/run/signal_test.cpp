@@ -89,6 +89,17 @@ TEST_CASE("the tops of a spectrum are its oscillations, not the window's side lo
   CHECK(std::abs(peaks[1].height / 0.01 - 1.0) < 0.05);
 }
 
+TEST_CASE("a drift that bends is no second oscillation")
+{
+  const Signal signal(2000, 5e-4, [](double t) { return std::cos(two_pi * 12.3 * t) + 0.3 * t * t * t; });
+
+  const auto peaks = spectral_peaks(signal.times, signal.values, 2);
+
+  REQUIRE(!peaks.empty());
+  CHECK(relative_error(peaks[0].frequency, 12.3) < 1e-3); // the drift's leakage
+  for (std::size_t i = 1; i < peaks.size(); ++i) CHECK(peaks[i].frequency > 1.8);
+}
+
 TEST_CASE("a spectrum without an oscillation has no tops")
 {
   const Signal line(2000, 5e-4, [](double t) { return 3.0 - 2.0 * t; });
@@ -182,9 +193,8 @@ TEST_CASE("dominant frequency and growth work together on a decaying oscillation
 
 TEST_CASE("a drift under an oscillation leaves growth and frequency as they are")
 {
-  const Signal signal(4000, 2.5e-4, [](double t) {
-    return 0.3 - 2.0 * t + std::exp(-0.7 * t) * std::cos(two_pi * 25.3 * t);
-  });
+  const Signal signal(4000, 2.5e-4,
+                      [](double t) { return 0.3 - 2.0 * t + std::exp(-0.7 * t) * std::cos(two_pi * 25.3 * t); });
 
   const auto growth = growth_rate(signal.times, signal.values, 25.0);
 

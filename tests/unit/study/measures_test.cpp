@@ -142,9 +142,8 @@ TEST_CASE("dominant_frequency is that of a sine, and empty where nothing oscilla
 
 TEST_CASE("two_frequencies are those of two sines, the stronger first, with the other's height")
 {
-  const auto table = history(2001, 1e-3, [](double t) {
-    return 0.25 * std::sin(two_pi * 11.5 * t) + std::sin(two_pi * 44.25 * t + 1.0);
-  });
+  const auto table = history(
+      2001, 1e-3, [](double t) { return 0.25 * std::sin(two_pi * 11.5 * t) + std::sin(two_pi * 44.25 * t + 1.0); });
   const auto values = evaluate(of("two_frequencies"), table, {});
 
   CHECK(columns_of(of("two_frequencies")) == std::vector<std::string>{"m", "m.second", "m.second_height"});

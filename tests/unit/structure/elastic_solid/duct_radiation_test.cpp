@@ -94,7 +94,8 @@ TEST_CASE("the transform of a wall is that of its pieces")
 
 TEST_CASE("in a gas at rest the duct takes what the closed form of its waves says")
 {
-  // sigma = -(b rho/(4 H)) sum_n eps_n |w^(k_n)|^2 omega/k_n over the waves that travel, k_n^2 = (omega/c)^2 - (n pi/H)^2
+  // sigma = -(b rho/(4 H)) sum_n eps_n |w^(k_n)|^2 omega/k_n over the waves that travel, k_n^2 = (omega/c)^2 - (n
+  // pi/H)^2
   const auto duct = paper_duct(0.0);
   const auto wall = bump(0.35, 24);
   for (const double ratio : {0.5, 1.02, 2.5, 3.7}) { // of the frequency to c/(2 H)
@@ -129,7 +130,8 @@ TEST_CASE("in a flow the waves along it and against it take their parts")
 TEST_CASE("the load on a flat piston is the sum over all waves across the duct, those that decay too")
 {
   // In a gas at rest, K = (rho omega^2/H) sum_n eps_n I_n with I = -(q l - 1 + exp(-q l))/q^3: the Green's function of
-  // each wave, exp(-q |x|)/(2 q) with q^2 = (n pi/H)^2 - (omega/c)^2, twice integrated; q = -i k where the wave travels.
+  // each wave, exp(-q |x|)/(2 q) with q^2 = (n pi/H)^2 - (omega/c)^2, twice integrated; q = -i k where the wave
+  // travels.
   const auto duct = paper_duct(0.0);
   const double l = 0.35, omega = 2.5 * pi * duct.sound_speed / duct.height;
   const int n_waves = 4000, n_pieces = 64;
