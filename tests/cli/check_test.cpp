@@ -8,5 +8,5 @@ using namespace mullion;
 
 TEST_CASE("every broken case is refused with all of its mistakes, each at its place")
 {
-  test::check_broken_files(MULLION_SOURCE_DIR "/tests/cli/broken_cases", "check", 108);
+  test::check_broken_files(MULLION_SOURCE_DIR "/tests/cli/broken_cases", "check", 109);
 }

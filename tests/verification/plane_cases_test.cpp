@@ -69,6 +69,23 @@ const Sets iss = {"driver.scheme=iss", "driver.w_end=false"};
 const Sets cibc_recipe = {"driver.scheme=cibc",   "driver.half_offset=true",  "driver.w_end=false",
                           "fluid.gradient=cell",  "driver.fluid_density=1.3", "driver.acceleration=difference",
                           "driver.omega=0.00075", "driver.omega_check=warn"};
+/// Irregular triangles, 20 faces on the arch; in steps of 10 us the Courant numbers are 1.85 and 1.64. Triangles
+/// without a limiter ran at 2.2 and not at 2.6: the limit for squares, 1.35, is not theirs.
+const Sets irregular_box = {"fluid.mesh=box_arch:20x10,delaunay,length=0.34795,thickness=0.006,angle=15,height=0.2,"
+                            "growth=1.04,perturb=0.2",
+                            "fluid.cfl_max=2.2", "fluid.cfl_warn=2.1"};
+const Sets irregular_duct = {"fluid.mesh=duct_arch:20x36,delaunay,length=0.34795,thickness=0.006,angle=15,height=1.25,"
+                             "growth=1.06,largest=0.06,left=-2.2,right=2.5,perturb=0.15",
+                             "fluid.cfl_max=2.2", "fluid.cfl_warn=2.1"};
+
+/// What a lag of `lag` seconds adds to the rate: omega tau (2 pi shift), of the frequency that the neutral scheme has
+/// on the same mesh; in vacuo 574.199 Hz as Newmark's method runs it in steps of 10 us.
+double lag_law(double frequency, double lag)
+{
+  constexpr double two_pi = 2.0 * std::numbers::pi;
+  return two_pi * frequency * lag * two_pi * (frequency - 574.199);
+}
+
 const Sets subcycled = {"run.dt=5e-5", "fluid.substeps=5"};
 
 /// A field of the last result file, (components x entities) one after the other.
@@ -99,6 +116,7 @@ constexpr double foot_after_60_us = 0.1 + 8096.1156223 * 6.0e-5;
 
 struct Piston {
   double chi, displacement; ///< rms deviation of the interface's velocity over its mean; mean [m] at 100 us
+  double unevenness;        ///< largest rms deviation of the gas' pressure on the wall over its mean, of all times
 };
 
 Piston piston(const Sets& sets)
@@ -109,9 +127,12 @@ Piston piston(const Sets& sets)
   const auto& time = history.at("time");
   const auto& mean = history.at("structure.wet.velocity_x.mean");
   const auto& deviation = history.at("structure.wet.velocity_x.deviation");
-  Piston result{0.0, 0.0};
+  Piston result{0.0, 0.0, 0.0};
+  const auto& pressure = history.at("fluid.wall.pressure.mean");
+  const auto& pressure_deviation = history.at("fluid.wall.pressure.deviation");
   double n = 0.0;
   for (std::size_t i = 0; i < time.size(); ++i) {
+    result.unevenness = std::max(result.unevenness, pressure_deviation[i] / pressure[i]);
     if (time[i] < 2.0e-5 || time[i] > 1.2e-4) continue;
     result.chi += deviation[i] / mean[i];
     n += 1.0;
@@ -152,6 +173,19 @@ TEST_CASE("in a closed box a lag of the scheme feeds the arch")
   CHECK(lagging < 0.058);
 }
 
+TEST_CASE("on irregular triangles, too, a lag feeds the arch by the lag law")
+{
+  const Sets end = {"run.end_time=0.03"};
+  const auto neutral = rate_of("closed_box", load + irregular_box + iss + end);
+
+  CHECK(neutral.sigma > -0.03); // the fluid's own damping
+  CHECK(neutral.sigma < 0.005);
+  const double lagging = rate_of("closed_box", load + irregular_box + css_parallel + end).sigma - neutral.sigma;
+  // The law is of first order in shift over frequency, 5e-4, and in omega tau, 0.05: of second order in both a percent;
+  // the 574.199 Hz has as much, its last digit being 0.2 % of the shift.
+  CHECK(std::abs(lagging / lag_law(neutral.frequency, 1.5e-5) - 1.0) < 0.05);
+}
+
 TEST_CASE("a step in pressure bends the half space behind it by the exact slope")
 {
   const RunFolder folder;
@@ -173,7 +207,12 @@ TEST_SUITE("full")
     CHECK(std::abs(two.displacement / exact_piston - 1.0) < 5e-4);
     const auto irregular = piston({"fluid.mesh=box:80x32,delaunay,size=0.25x0.1,origin=-0.25:0,perturb=0.2"});
     CHECK(std::abs(irregular.displacement / exact_piston - 1.0) < 5e-4);
-    MESSAGE("irregular triangles: chi_rms = ", irregular.chi);
+    // The gas starts with a jump at the wall, and on irregular cells its wave leaves unevenly: then the motion is not
+    // one-dimensional, whatever the transfer. A solid at rest answers with v = p/Z: what is uneven in v at first is as
+    // uneven as p, and later the solid rings with a part of it. That part is not small, as nothing dissipates it.
+    CHECK(irregular.chi < irregular.unevenness);
+    CHECK(irregular.chi > 0.01 * irregular.unevenness);
+    CHECK(irregular.unevenness < 1e-3); // of the gas alone: 20 times below what node projection does
     const auto strain = piston({"structure.plane=strain"});
     CHECK(std::abs(strain.displacement / 6.22609521e-4 - 1.0) < 5e-4); // the other modulus
   }
@@ -192,12 +231,50 @@ TEST_SUITE("full")
     CHECK(std::abs(rate_of("closed_box", load + gss).sigma - neutral) <= 0.005);
     CHECK(std::abs(rate_of("closed_box", load + cibc_recipe).sigma / -0.132 - 1.0) < 0.1);
 
-    // the lag law: sigma = omega tau (2 pi shift), in vacuo 574.199 Hz with Newmark's period error
-    constexpr double two_pi = 2.0 * std::numbers::pi;
-    const double shift = lag_of_css.frequency - 574.199;
-    const double law = two_pi * lag_of_css.frequency * two_pi * shift;
-    CHECK(std::abs((lag_of_css.sigma - neutral) / (law * 0.5e-5) - 1.0) < 0.05);
-    CHECK(std::abs(parallel / (law * 1.5e-5) - 1.0) < 0.05);
+    CHECK(std::abs((lag_of_css.sigma - neutral) / lag_law(lag_of_css.frequency, 0.5e-5) - 1.0) < 0.05);
+    CHECK(std::abs(parallel / lag_law(lag_of_css.frequency, 1.5e-5) - 1.0) < 0.05);
+  }
+
+  TEST_CASE("rates of the arch in the closed box on irregular triangles, by scheme")
+  {
+    const auto neutral = rate_of("closed_box", load + irregular_box + iss);
+    CHECK(neutral.sigma > -0.03);
+    CHECK(neutral.sigma < 0.005);
+    const double shift = neutral.frequency - 574.199;
+    CHECK(shift > 0.2); // a spring of a size like that of the squares, 0.4 Hz: the wall cells are twice as high here
+    CHECK(shift < 0.5);
+    const double lagging = rate_of("closed_box", load + irregular_box + css).sigma - neutral.sigma;
+    CHECK(std::abs(lagging / lag_law(neutral.frequency, 0.5e-5) - 1.0) < 0.05);
+    const double parallel = rate_of("closed_box", load + irregular_box + css_parallel).sigma - neutral.sigma;
+    CHECK(std::abs(parallel / lag_law(neutral.frequency, 1.5e-5) - 1.0) < 0.05);
+    CHECK(std::abs(rate_of("closed_box", load + irregular_box + gss).sigma - neutral.sigma) <= 0.005);
+  }
+
+  TEST_CASE("the open duct takes the arch's energy on irregular triangles, too")
+  {
+    const auto neutral = rate_of("flow_shell", irregular_duct + iss);
+    const auto lagging = rate_of("flow_shell", irregular_duct + css);
+    for (const auto& rate : {neutral, lagging}) {
+      CHECK(rate.sigma > -14.5);
+      CHECK(rate.sigma < -11.0);
+      CHECK(rate.frequency > 571.8);
+      CHECK(rate.frequency < 573.2);
+    }
+    CHECK(lagging.sigma - neutral.sigma > -0.30);
+    CHECK(lagging.sigma - neutral.sigma < -0.08);
+  }
+
+  TEST_CASE("the arch of half the duct's frequency decays as theory and another program say")
+  {
+    // The second mode, 115 Hz. A flat wall radiates 1.44 1/s, the other program found 1.6: bounds that both meet, and
+    // that neither growth nor G25's rate does.
+    const auto rate =
+        rate_of("flow_shell",
+                css + Sets{"run.end_time=0.06", "fluid.mesh=duct_arch:62x52,length=0.92437,thickness=0.004,angle=12",
+                           "structure.mesh=arch:48x1,length=0.92437,thickness=0.004,angle=12"},
+                1, 0.05);
+    CHECK(rate.sigma > -2.0);
+    CHECK(rate.sigma < -1.3);
   }
 
   TEST_CASE("rates of the arch in the closed box, subcycled")

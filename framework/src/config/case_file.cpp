@@ -2,8 +2,10 @@
 #include <mullion/app/case_file.hpp>
 
 #include "config/case_reader.hpp"
+#include "config/function_calls.hpp"
 #include "config/overrides.hpp"
 #include "config/parameter_table.hpp"
+#include "config/suggestions.hpp"
 #include "config/toml_reader.hpp"
 #include "config/toml_writer.hpp"
 #include "run/time_plan.hpp"
@@ -53,6 +55,7 @@ struct OutputOptions {
   bool history = true;
   std::int64_t history_every = 1;
   std::int64_t checkpoint_every = 0, keep_checkpoints = 2;
+  std::string functions;
   static constexpr auto table()
   {
     return std::tuple{
@@ -63,7 +66,9 @@ struct OutputOptions {
         parameter("checkpoint_every", &OutputOptions::checkpoint_every, "1", "steps between two checkpoints, 0: none",
                   at_least(0.0)),
         parameter("keep_checkpoints", &OutputOptions::keep_checkpoints, "1",
-                  "so many checkpoints stay, the newest ones, 0: all", at_least(0.0))};
+                  "so many checkpoints stay, the newest ones, 0: all", at_least(0.0)),
+        parameter("functions", &OutputOptions::functions, "",
+                  "numbers that modules are asked for at the end, \"structure.frequency(1); …\"")};
   }
 };
 
@@ -179,7 +184,40 @@ void check_respawn(CaseReader& reader)
                                             : "; write process = true there, or give --processes"));
 }
 
-void read_output(CaseReader& reader)
+/// Is there such a function of so many numbers? What is not right is reported.
+bool is_function(CaseReader& reader, const FunctionCall& call, const Place& place)
+{
+  const auto complain = [&](const std::string& what) {
+    reader.diagnostics.add(place, fmt::format("[output] functions: {}: {}", call.text, what));
+    return false;
+  };
+  const auto* instance = reader.module(call.instance);
+  if (instance == nullptr) return complain(fmt::format("the case has no module '{}'", call.instance));
+  const auto& module = reader.catalogue.open(instance->plugin).module();
+  std::vector<std::string> known;
+  for (const auto& spec : std::span(module.functions, module.n_functions)) {
+    if (spec.n_results == 0) continue; // an action of the step
+    known.emplace_back(spec.name);
+    if (call.function != spec.name) continue;
+    if (call.arguments.size() == spec.n_arguments) return true;
+    return complain(fmt::format("{} takes {} number{}, not {}: {}", call.function, spec.n_arguments,
+                                spec.n_arguments == 1 ? "" : "s", call.arguments.size(), spec.meaning));
+  }
+  return complain(fmt::format("{} offers no '{}'{}", instance->plugin, call.function,
+                              known.empty() ? ": it answers nothing" : suggestion(call.function, known)));
+}
+
+void read_functions(CaseReader& reader, const std::string& text, const Node& output, bool are_modules_known)
+{
+  const auto found = parse_function_calls(text);
+  const auto* entry = output.table()->find("functions");
+  if (!found.complaint.empty())
+    return reader.diagnostics.add(entry->value.place, "[output] functions: " + found.complaint);
+  for (const auto& call : found.calls)
+    if (are_modules_known && is_function(reader, call, entry->value.place)) reader.value.functions.push_back(call);
+}
+
+void read_output(CaseReader& reader, bool are_modules_known)
 {
   const Node* node = reader.table("output");
   if (node == nullptr) return;
@@ -190,6 +228,7 @@ void read_output(CaseReader& reader)
   reader.value.history_every = output.history_every;
   reader.value.checkpoint_every = output.checkpoint_every;
   reader.value.keep_checkpoints = output.keep_checkpoints;
+  read_functions(reader, output.functions, *node, are_modules_known);
 }
 
 void read_expectations(CaseReader& reader)
@@ -244,7 +283,7 @@ void read_tables(CaseReader& reader)
   const bool is_interface_sound = read_coupling(reader, are_modules_known);
   const bool is_driver_sound = read_driver(reader);
   check_respawn(reader);
-  read_output(reader);
+  read_output(reader, are_modules_known);
   read_expectations(reader);
   if (are_modules_known && is_interface_sound && is_driver_sound) check_scheme(reader, are_times_sound);
 }

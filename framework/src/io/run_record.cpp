@@ -109,6 +109,10 @@ Json attempt_to_json(const Attempt& a)
   json["steps"] = a.steps;
   json["simulated_time"] = a.simulated_time;
   json["wall_s"] = a.wall_s;
+  if (!a.functions.empty()) {
+    json["functions"] = Json::object();
+    for (const auto& [call, answer] : a.functions) json["functions"][call] = answer;
+  }
   json["timings"] = to_list(a.timings, timing_to_json);
   json["events"] = to_list(a.events, event_to_json);
   json["files"] = a.files;
@@ -130,6 +134,9 @@ Attempt attempt_from_json(const Json& json)
   take(json, "steps", a.steps);
   take(json, "simulated_time", a.simulated_time);
   take(json, "wall_s", a.wall_s);
+  if (const auto functions = json.find("functions"); functions != json.end())
+    for (const auto& [call, answer] : functions->items())
+      if (answer.is_number()) a.functions.emplace_back(call, answer.get<double>()); // null: was not finite
   take_list(json, "timings", a.timings, timing_from_json);
   take_list(json, "events", a.events, event_from_json);
   take(json, "files", a.files);

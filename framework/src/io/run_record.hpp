@@ -40,6 +40,7 @@ struct Attempt {
   std::int64_t first_step = 0, steps = 0;
   double simulated_time = 0.0; ///< [s] at the end
   double wall_s = 0.0;
+  std::vector<std::pair<std::string, double>> functions; ///< what modules were asked for at the end, and the answers
   std::vector<Timing> timings;
   std::vector<Event> events;
   std::vector<std::string> files; ///< relative to the run's folder

@@ -12,6 +12,7 @@
 
 #include <mullion/sdk/error.hpp>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -31,7 +32,7 @@ std::optional<std::string> text_of(run::Session& session, const std::string& ins
 {
   const shm::Descriptor file(::memfd_create(function.c_str(), MFD_CLOEXEC));
   MULLION_REQUIRE(file.get() >= 0, Errc::io, "no memory for a file: {}", std::strerror(errno));
-  if (!session.ask(instance, function, file.get())) return std::nullopt;
+  if (!session.ask(instance, function, std::array{static_cast<double>(file.get())})) return std::nullopt;
   const auto length = ::lseek(file.get(), 0, SEEK_END);
   std::string text(static_cast<std::size_t>(length), '\0');
   for (std::size_t done = 0; done < text.size();) {

@@ -11,6 +11,7 @@
 #include <mullion/sdk/error.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -303,8 +304,17 @@ void Recorder::summarise_interface()
   summary.made = find_manufactured_energy(interface_);
   if (const auto lag = session_->wiring().net_lag) summary.lag = *lag * case_.dt;
   const auto structure = case_.interfaces[0].structure;
-  summary.vacuum_frequency = session_->ask(structure.substr(0, structure.find('.')), "vacuum_frequency", case_.dt);
+  summary.vacuum_frequency =
+      session_->ask(structure.substr(0, structure.find('.')), "vacuum_frequency", std::array{case_.dt});
   interface_summary_ = summary;
+}
+
+void Recorder::ask_functions()
+{
+  auto& answers = record_.attempts.back().functions;
+  answers.clear(); // a module may have died under the first question
+  for (const auto& call : case_.functions)
+    answers.emplace_back(call.text, session_->ask(call.instance, call.function, call.arguments).value());
 }
 
 double Recorder::measure(const Column& column) const

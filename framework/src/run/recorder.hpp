@@ -72,6 +72,8 @@ public:
   [[nodiscard]] const std::optional<InterfaceSummary>& interface_summary() const { return interface_summary_; }
   /// While the modules still answer: the interface's part of the summary.
   void summarise_interface();
+  /// While the modules still answer: the numbers that [output] functions asks for, for run.json and the summary.
+  void ask_functions();
 
 private:
   enum class Statistic { value, mean, largest, deviation };

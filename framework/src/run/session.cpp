@@ -359,15 +359,17 @@ void Session::stamp(FieldAddress at, double time, std::uint32_t kind)
 
 void Session::warn(const std::string& text) const { log::warning("driver", "{}: {}", case_.scheme, text); }
 
-std::optional<double> Session::ask(const std::string& instance, const std::string& function, double argument)
+std::optional<double> Session::ask(const std::string& instance, const std::string& function,
+                                   std::span<const double> arguments)
 {
   const auto m = find_module(instance);
   const auto& entries = *modules_[m].entries;
   for (std::uint32_t f = 0; f < entries.n_functions; ++f) {
     const auto& spec = entries.functions[f];
-    if (function != spec.name || spec.n_arguments != 1 || spec.n_results != 1) continue;
+    if (function != spec.name || spec.n_arguments != arguments.size() || spec.n_results != 1) continue;
     const double now = control_.time.load();
-    begin(m, Operation::call, f, {control_.step.load(), now, now, case_.dt, 0}, now, &argument, 1);
+    begin(m, Operation::call, f, {control_.step.load(), now, now, case_.dt, 0}, now, arguments.data(),
+          static_cast<std::uint32_t>(arguments.size()));
     await(m);
     return result(m);
   }

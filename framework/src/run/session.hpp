@@ -136,8 +136,9 @@ public:
   [[nodiscard]] const std::optional<Ledger>& ledger() const { return ledger_; }
   /// @returns no_window if the run has no driver/state
   [[nodiscard]] std::uint32_t state_window() const { return state_window_; }
-  /// A number that a module answers, if it offers such a function of one number; else nothing.
-  [[nodiscard]] std::optional<double> ask(const std::string& instance, const std::string& function, double argument);
+  /// A number that a module answers, if it offers such a function of so many numbers; else nothing.
+  [[nodiscard]] std::optional<double> ask(const std::string& instance, const std::string& function,
+                                          std::span<const double> arguments);
   /// The windows that this attempt wrote, in the order of their first writing: who differs first is the culprit.
   [[nodiscard]] const std::vector<std::uint32_t>& write_order() const { return write_order_; }
 

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <ranges>
 #include <vector>
 
 namespace mullion::run {
@@ -44,6 +45,13 @@ std::size_t n_uniform(std::span<const double> times)
                     step);
   return std::abs(times[n - 1] - times[0] - static_cast<double>(n - 1) * step) <= tolerance ? n : n - 1;
 }
+
+/// What is left of a drift looks like one period and a half.
+constexpr double fewest_periods = 1.9;
+
+/// So many periods per record from a peak, the Hann window's side lobes are below 1/300 of it: what is higher there is
+/// another oscillation, what is higher nearer by may be a side lobe.
+constexpr double main_lobe = 4.0;
 
 /// The values less their mean and linear trend, times the Hann window.
 std::vector<double> windowed(std::span<const double> values)
@@ -246,10 +254,11 @@ double amplitude(std::span<const double> values)
   return 0.5 * (*high - *low);
 }
 
-double dominant_frequency(std::span<const double> times, std::span<const double> values)
+std::vector<SpectralPeak> spectral_peaks(std::span<const double> times, std::span<const double> values,
+                                         std::size_t n_peaks)
 {
   check_samples(times, values);
-  if (times.size() < 9) return 0.0; // two periods of four samples, and their end
+  if (times.size() < 9) return {}; // two periods of four samples, and their end
   const auto n = n_uniform(times);
   values = values.first(n);
   const double step = (times[n - 1] - times[0]) / static_cast<double>(n - 1);
@@ -258,7 +267,7 @@ double dominant_frequency(std::span<const double> times, std::span<const double>
   const double largest = std::abs(
       *std::max_element(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
   const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * largest;
-  if (amplitude(signal) <= rounding) return 0.0; // constant or linear but for rounding
+  if (amplitude(signal) <= rounding) return {}; // constant or linear but for rounding
 
   std::size_t padded = 1;
   while (padded < 2 * n) padded *= 2; // at least two points per bin of the record
@@ -268,14 +277,36 @@ double dominant_frequency(std::span<const double> times, std::span<const double>
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   fft.fwd(spectrum, input);
-  std::size_t peak = 1;
-  for (std::size_t k = 2; k < spectrum.size(); ++k)
-    if (std::norm(spectrum[k]) > std::norm(spectrum[peak])) peak = k;
-
   const double width = static_cast<double>(n) / static_cast<double>(padded); // periods per record, per point
-  const double periods = refine(signal, static_cast<double>(peak) * width, width);
-  if (periods < 1.9) return 0.0; // what is left of a drift looks like one period and a half
-  return periods / (static_cast<double>(n) * step);
+  const auto is_new = [&](const std::vector<SpectralPeak>& found, std::size_t k) {
+    return std::none_of(found.begin(), found.end(), [&](const SpectralPeak& peak) {
+      return std::abs(static_cast<double>(k) * width - peak.frequency) < main_lobe;
+    });
+  };
+  std::vector<SpectralPeak> peaks; // frequencies in periods per record
+  while (peaks.size() < n_peaks) {
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < spectrum.size(); ++k) {
+      const double there = std::norm(spectrum[k]);
+      const bool is_top =
+          there >= std::norm(spectrum[k - 1]) && (k + 1 == spectrum.size() || there >= std::norm(spectrum[k + 1]));
+      const bool is_next = is_top && static_cast<double>(k) * width >= fewest_periods && is_new(peaks, k);
+      if ((peaks.empty() || is_next) && (best == 0 || there > std::norm(spectrum[best]))) best = k;
+    }
+    if (best == 0) break;
+    const double periods = refine(signal, static_cast<double>(best) * width, width);
+    if (periods < fewest_periods) break;
+    peaks.push_back({periods, std::sqrt(spectrum_at(signal, periods / static_cast<double>(n)).value)});
+  }
+  for (auto& peak : peaks) peak.frequency /= static_cast<double>(n) * step;
+  for (auto& peak : std::views::reverse(peaks)) peak.height /= peaks.front().height;
+  return peaks;
+}
+
+double dominant_frequency(std::span<const double> times, std::span<const double> values)
+{
+  const auto peaks = spectral_peaks(times, values, 1);
+  return peaks.empty() ? 0.0 : peaks[0].frequency;
 }
 
 Growth growth_rate(std::span<const double> times, std::span<const double> values, double frequency)

@@ -2,7 +2,9 @@
 // grows. Pure functions of samples; they know neither files nor windows.
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <vector>
 
 namespace mullion::run {
 
@@ -22,6 +24,20 @@ namespace mullion::run {
 /// @return        0 if fewer than about two periods (1.9) are seen, or nothing oscillates
 /// @throws Error  Errc::shape: lengths differ or steps are unequal; Errc::numeric: a value is not finite
 [[nodiscard]] double dominant_frequency(std::span<const double> times, std::span<const double> values);
+
+struct SpectralPeak {
+  double frequency = 0.0; ///< [1/unit of times]
+  double height = 1.0;    ///< |X| over that of the strongest peak
+};
+
+/// The tops of the spectrum that dominant_frequency() looks at, the highest first, each found as well as that one. One
+/// within four periods per record of a higher top is left out: it may be the window's side lobe.
+///
+/// @param n_peaks  at most so many
+/// @return         of 1.9 periods and above; none if the highest of all is below, as dominant_frequency finds none then
+/// @throws Error   as dominant_frequency
+[[nodiscard]] std::vector<SpectralPeak> spectral_peaks(std::span<const double> times, std::span<const double> values,
+                                                       std::size_t n_peaks);
 
 struct Growth {
   double sigma = 0.0;             ///< [1/unit of times] positive: growing

@@ -75,6 +75,7 @@ std::string run_steps(const RunOptions& options, run::Session& session, process:
     }
   }
   recovery.between_steps([&] { recorder.summarise_interface(); });
+  recovery.between_steps([&] { recorder.ask_functions(); });
   return stopped_by;
 }
 

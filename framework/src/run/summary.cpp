@@ -74,6 +74,7 @@ std::string summary(const Recorder& recorder, const std::string& stopped_by)
     text += fmt::format("  expected from: {}\n", expected.source);
   }
   if (recorder.interface_summary()) text += describe_interface(*recorder.interface_summary());
+  for (const auto& [call, answer] : attempt.functions) text += fmt::format("{} = {:.6g}\n", call, answer);
   text += fmt::format("time          {:<28} {:>10} {:>10} {:>10} {:>7}\n", "", "calls", "work", "waiting", "share");
   for (const auto& timing : attempt.timings)
     if (timing.call != attach_call)

@@ -53,6 +53,7 @@ constexpr Kind kinds[] = {{"growth_rate", "quantity"},
                           {"envelope_rate", "quantity window"},
                           {"error_doubling", "quantity window offset"},
                           {"dominant_frequency", "quantity"},
+                          {"two_frequencies", "quantity"},
                           {"amplitude", "quantity"},
                           {"maximum", "quantity"},
                           {"last", "quantity"},
@@ -63,6 +64,7 @@ constexpr Kind kinds[] = {{"growth_rate", "quantity"},
                           {"reference_error", "quantity file time_column value_column time_scale norm"},
                           {"drift", "relative_to"},
                           {"iterations", "quantity"},
+                          {"function", "quantity"},
                           {"wall_time", ""},
                           {"steps", ""}};
 
@@ -71,7 +73,8 @@ constexpr const char* default_iterations = "driver.iterations";
 bool takes(const Kind& kind, std::string_view key)
 {
   if (key == "name" || key == "kind" || key == "unit" || key == "scale") return true;
-  if (key == "from" || key == "to") return kind.name != "wall_time" && kind.name != "steps"; // of the whole run
+  if (key == "from" || key == "to")
+    return kind.name != "wall_time" && kind.name != "steps" && kind.name != "function"; // of the whole run
   for (auto rest = kind.keys; !rest.empty();) {
     const auto end = std::min(rest.find(' '), rest.size());
     if (rest.substr(0, end) == key) return true;

@@ -140,6 +140,25 @@ Values frequency(const Measure& m, std::span<const double> times, std::span<cons
   return {found * m.scale};
 }
 
+Values two_frequencies(const Measure& m, std::span<const double> times, std::span<const double> values)
+{
+  const auto peaks = run::spectral_peaks(times, values, 2);
+  if (peaks.empty()) return {std::nullopt, std::nullopt, std::nullopt};
+  if (peaks.size() == 1) return {peaks[0].frequency * m.scale, std::nullopt, std::nullopt};
+  return {peaks[0].frequency * m.scale, peaks[1].frequency * m.scale, peaks[1].height};
+}
+
+/// An answer that the run recorded.
+Values function(const Measure& m, const RunFacts& facts)
+{
+  for (const auto& [call, answer] : facts.functions)
+    if (call == m.quantity) return {answer * m.scale};
+  std::string asked;
+  for (const auto& entry : facts.functions) asked += (asked.empty() ? "" : ", ") + entry.first;
+  throw Error(Errc::config, fmt::format("the run was not asked for '{}'; [output] functions of the case asks for {}",
+                                        m.quantity, asked.empty() ? "nothing" : asked));
+}
+
 Values first_time(const Measure& m, std::span<const double> times, std::span<const double> values)
 {
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -272,6 +291,8 @@ double deviation_ratio(std::span<const double> times, std::span<const double> va
 std::vector<std::string> columns_of(const Measure& measure)
 {
   if (measure.kind == "growth_rate") return {measure.name, measure.name + ".residual", measure.name + ".frequency"};
+  if (measure.kind == "two_frequencies")
+    return {measure.name, measure.name + ".second", measure.name + ".second_height"};
   if (measure.kind == "error_doubling") return {measure.name, measure.name + ".bound"};
   if (measure.kind == "iterations") return {measure.name, measure.name + ".max"};
   return {measure.name};
@@ -289,7 +310,7 @@ std::string unit_of(const Measure& m)
 {
   if (!m.unit.empty() || m.scale != 1.0) return m.unit;
   if (m.kind == "growth_rate" || m.kind == "envelope_rate" || m.kind == "error_doubling") return "1/s";
-  if (m.kind == "dominant_frequency") return "Hz";
+  if (m.kind == "dominant_frequency" || m.kind == "two_frequencies") return "Hz";
   if (m.kind == "first_time" || m.kind == "wall_time") return "s";
   if (m.kind == "ratio" || m.kind == "iterations" || m.kind == "steps") return "1";
   return m.kind == "drift" && !m.relative_to.empty() ? "1" : "";
@@ -299,6 +320,7 @@ Values evaluate(const Measure& m, const ColumnTable& history, const RunFacts& fa
 {
   if (m.kind == "wall_time") return {facts.wall_s * m.scale};
   if (m.kind == "steps") return {static_cast<double>(facts.steps) * m.scale};
+  if (m.kind == "function") return function(m, facts);
   const Rows rows = rows_of(m, history);
   if (m.kind == "drift") return drift(m, history, rows);
   if (m.kind == "iterations") return iterations(m, history, rows);
@@ -308,6 +330,7 @@ Values evaluate(const Measure& m, const ColumnTable& history, const RunFacts& fa
   if (m.kind == "envelope_rate") return {envelope_rate(rows.times, values, m.window) * m.scale};
   if (m.kind == "error_doubling") return doubling(m, rows.times, values);
   if (m.kind == "dominant_frequency") return frequency(m, rows.times, values);
+  if (m.kind == "two_frequencies") return two_frequencies(m, rows.times, values);
   if (m.kind == "amplitude") return {run::amplitude(values) * m.scale};
   if (m.kind == "maximum") return {largest_magnitude(values) * m.scale};
   if (m.kind == "last") return {values.back() * m.scale};

@@ -34,6 +34,7 @@ struct Measure {
 struct RunFacts {
   double wall_s = 0.0;
   std::int64_t steps = 0;
+  std::vector<std::pair<std::string, double>> functions = {}; ///< asked for at the end, and the answers
 };
 
 /// Standard deviation about the mean; 0 without values.

@@ -66,7 +66,7 @@ std::string place_of_history(const StudyFile& study, std::size_t run)
 
 } // namespace
 
-bool needs_history(const std::string& kind) { return kind != "wall_time" && kind != "steps"; }
+bool needs_history(const std::string& kind) { return kind != "wall_time" && kind != "steps" && kind != "function"; }
 
 std::string placement_flag(const StudyFile& study)
 {

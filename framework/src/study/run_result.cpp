@@ -82,7 +82,7 @@ void measure_history(RunResult& result, const ColumnTable& history, const std::s
     const auto n_columns = columns_of(m).size();
     try {
       if (needs_history(m.kind) && !problem.empty()) throw Error(Errc::io, problem);
-      auto values = evaluate(m, history, {result.wall_s, result.steps});
+      auto values = evaluate(m, history, {result.wall_s, result.steps, result.functions});
       for (auto& value : values)
         if (value && !std::isfinite(*value)) value.reset();
       result.values.insert(result.values.end(), values.begin(), values.end());
@@ -111,6 +111,7 @@ RunResult collect(const fs::path& folder, int status)
     result.message = without_numbers(one_line(attempt.error));
     result.steps = attempt.steps;
     result.wall_s = attempt.wall_s;
+    result.functions = attempt.functions;
   }
   const bool is_closed = result.outcome == "completed" || result.outcome == "stopped" || result.outcome == "failed";
   result.has_died = !is_closed;
@@ -149,6 +150,10 @@ void write_result(const fs::path& folder, const RunResult& result, const Measuri
   json["died"] = result.has_died;
   json["steps"] = result.steps;
   json["wall_s"] = result.wall_s;
+  if (!result.functions.empty()) {
+    json["functions"] = Json::object();
+    for (const auto& [call, answer] : result.functions) json["functions"][call] = answer;
+  }
   json["history"] = result.history;
   json["definition"] = definition_of_all(measuring);
   json["values"] = Json::array();
@@ -170,6 +175,9 @@ std::optional<RunResult> read_result(const fs::path& folder, const std::string& 
     json.at("died").get_to(result.has_died);
     json.at("steps").get_to(result.steps);
     json.at("wall_s").get_to(result.wall_s);
+    if (const auto functions = json.find("functions"); functions != json.end())
+      for (const auto& [call, answer] : functions->items())
+        if (answer.is_number()) result.functions.emplace_back(call, answer.get<double>());
     json.at("history").get_to(result.history);
     json.at("definition").get_to(result.definition);
     for (const auto& value : json.at("values"))

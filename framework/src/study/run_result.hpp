@@ -20,6 +20,7 @@ struct RunResult {
   bool has_died = false;   ///< the process went without closing its files: they may lack their last lines
   std::int64_t steps = 0;
   double wall_s = 0.0;
+  std::vector<std::pair<std::string, double>> functions; ///< asked for at the end, and the answers
   std::string history;                       ///< checksum of history.csv; "": there is none, or nobody needs it
   std::string definition;                    ///< checksum of the measures
   std::vector<std::optional<double>> values; ///< for each column of the measures; empty: not measured

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "boundary.hpp"
+#include "duct_radiation.hpp"
 #include "modes.hpp"
 #include "solid.hpp"
 #include "time_integration.hpp"
@@ -112,7 +113,12 @@ public:
               "lowest frequency without a load [Hz], as the integrator runs it in coupling steps of so many s"),
         query("write_mesh", &ElasticSolid::write_mesh, "with its groups, in Gmsh's format, to an open file; bytes"),
         query("list_boundaries", &ElasticSolid::list_boundaries,
-              "faces and names of its groups, to an open file; lines")};
+              "faces and names of its groups, to an open file; lines"),
+        query("radiation_rate", &ElasticSolid::radiation_rate,
+              "growth of a mode [1/s], below 0, by the waves that its wet surface, a part of the floor, sends along a "
+              "duct: mode, height [m], speed along x [m/s], density [kg/m^3], speed of sound [m/s]"),
+        query("radiation_shift", &ElasticSolid::radiation_shift,
+              "what the gas of that duct adds to the mode's frequency [Hz]; takes the same")};
   }
 
   void define(const TimeStep& initial) override;
@@ -125,6 +131,8 @@ public:
   double vacuum_frequency(double step);
   double write_mesh(double file);
   double list_boundaries(double file);
+  double radiation_rate(double mode, double height, double speed, double density, double sound_speed);
+  double radiation_shift(double mode, double height, double speed, double density, double sound_speed);
 
 private:
   void make_windows();
@@ -138,6 +146,9 @@ private:
   const FreeSolver& stiffness_solver();
   const FreeSolver& mass_solver();
   const Modes& modes();
+  /// As many of the lowest modes as `mode` says, or more. @throws Error naming `function`
+  Modes modes_to(double mode, const char* function);
+  [[nodiscard]] Radiation radiation(const char* function, double mode, const Duct& duct);
 
   [[nodiscard]] Motion working_motion() const;
   /// Overwrite the entries that are not free.

@@ -29,6 +29,7 @@ RunRecord some_record()
   attempt.steps = 100;
   attempt.simulated_time = 0.1;
   attempt.wall_s = 1.0 / 3.0;
+  attempt.functions = {{"structure.frequency(1)", 41.25}};
   attempt.timings = {{"fluid", "step", 100, 1.5, 1.25, 0.25}};
   attempt.events = {{50, "swap", "structure", "elastic_bar -> rigid"}};
   attempt.files = {"history.csv", "results.xdmf"};
@@ -55,6 +56,7 @@ TEST_CASE("a run's record comes back as it was written")
   CHECK(attempt.modules[1].module == "elastic_bar");
   CHECK(attempt.simulated_time == 0.1);
   CHECK(attempt.wall_s == 1.0 / 3.0);
+  CHECK(attempt.functions == std::vector<std::pair<std::string, double>>{{"structure.frequency(1)", 41.25}});
   CHECK(attempt.timings[0].work_s == 1.25);
   CHECK(attempt.events[0].detail == "elastic_bar -> rigid");
   CHECK(attempt.files == written.attempts[0].files);

@@ -140,6 +140,35 @@ TEST_CASE("dominant_frequency is that of a sine, and empty where nothing oscilla
   CHECK(!evaluate(of("dominant_frequency"), history(100, 0.1, [](double) { return 3.0; }), {})[0]);
 }
 
+TEST_CASE("two_frequencies are those of two sines, the stronger first, with the other's height")
+{
+  const auto table = history(
+      2001, 1e-3, [](double t) { return 0.25 * std::sin(two_pi * 11.5 * t) + std::sin(two_pi * 44.25 * t + 1.0); });
+  const auto values = evaluate(of("two_frequencies"), table, {});
+
+  CHECK(columns_of(of("two_frequencies")) == std::vector<std::string>{"m", "m.second", "m.second_height"});
+  REQUIRE(values.size() == 3);
+  CHECK(std::abs(*values[0] - 44.25) < 1e-4); // leakage at 88 and 65 periods: below 1/65^3 of a line
+  CHECK(std::abs(*values[1] - 11.5) < 1e-3);
+  CHECK(std::abs(*values[2] - 0.25) < 1e-3);
+  CHECK(!evaluate(of("two_frequencies"), history(100, 1e-3, [](double) { return 1.0; }), {})[0]);
+}
+
+TEST_CASE("function is the run's answer to the call of that text")
+{
+  auto measure = of("function");
+  measure.quantity = "structure.frequency(1)";
+  measure.scale = 2.0;
+  const RunFacts facts{0.0, 0, {{"structure.frequency(2)", 7.0}, {"structure.frequency(1)", 3.5}}};
+
+  CHECK(*evaluate(measure, {}, facts)[0] == 7.0);
+  measure.quantity = "structure.frequency(3)";
+  CHECK_THROWS_WITH_AS((void)evaluate(measure, {}, facts),
+                       "the run was not asked for 'structure.frequency(3)'; [output] functions of the case asks for "
+                       "structure.frequency(2), structure.frequency(1)",
+                       Error);
+}
+
 TEST_CASE("envelope_rate is exact for an exponential seen over whole periods, growing or decaying")
 {
   for (const double sigma : {0.75, -0.75}) {

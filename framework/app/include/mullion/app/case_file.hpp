@@ -45,6 +45,13 @@ struct Expectation {
   std::string source;     ///< where the numbers come from
 };
 
+/// A number that a module is asked for at the end of the run: [output] functions.
+struct FunctionCall {
+  std::string instance, function;
+  std::vector<double> arguments;
+  std::string text; ///< as the case has it: "structure.frequency(1)"
+};
+
 struct Case {
   std::string file;
   std::string name;
@@ -67,6 +74,7 @@ struct Case {
   std::int64_t checkpoint_every = 0; ///< steps between checkpoints; 0: none but that of a run that ends early
   std::int64_t keep_checkpoints = 2; ///< so many stay; 0: all
   std::vector<Expectation> expectations;
+  std::vector<FunctionCall> functions;
   std::string text; ///< the case as it is run, overrides included: what case.toml will say
 };
 
