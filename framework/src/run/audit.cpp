@@ -17,9 +17,10 @@ void Audit::keep(Session& session)
     if (control.working[w].is_written == 0) continue;
     const auto fields = session.windows().view(w).fields();
     for (std::uint32_t f = 0; f < fields.size(); ++f) {
-      if (static_cast<shm::Storage>(fields[f].storage) == shm::Storage::bound) continue;
+      const auto bytes = shm::field_bytes(fields[f]);
+      if (static_cast<shm::Storage>(fields[f].storage) == shm::Storage::bound || bytes == 0) continue;
       const auto* data = session.windows().locate(w, f, 0, epoch).data;
-      kept_.push_back({w, f, {data, data + shm::field_bytes(fields[f])}});
+      kept_.push_back({w, f, {data, data + bytes}});
     }
   }
 }
