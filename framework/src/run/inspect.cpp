@@ -63,7 +63,7 @@ public:
         const auto at = windows_->locate(window, fields[i], 1, epoch);
         const auto n = static_cast<std::size_t>(shm::field_bytes(*at.field));
         out.fields[i].resize(n);
-        std::memcpy(out.fields[i].data(), at.data, n);
+        if (n > 0) std::memcpy(out.fields[i].data(), at.data, n);
         sources.insert(source_of(window, fields[i]));
       }
       std::atomic_thread_fence(std::memory_order_acquire);
