@@ -137,10 +137,15 @@ void Commands::apply_pending(StepClock& clock)
         has_pending_.store(false, std::memory_order_relaxed);
         return;
       }
-      // One change at a time: while a candidate attaches, the next one waits. A checkpoint changes nothing.
-      if (session_.has_candidate() && pending_.front().what != "checkpoint") return;
-      command = std::move(pending_.front());
-      pending_.pop_front();
+      // One change at a time: while a candidate attaches, the next one waits. A checkpoint changes nothing and may
+      // overtake those that wait.
+      const auto next =
+          !session_.has_candidate()
+              ? pending_.begin()
+              : std::find_if(pending_.begin(), pending_.end(), [](const Pending& p) { return p.what == "checkpoint"; });
+      if (next == pending_.end()) return;
+      command = std::move(*next);
+      pending_.erase(next);
     }
     try {
       apply(command, clock);
