@@ -64,14 +64,14 @@ bool is_shared_code(const Include& include)
   return is_of_folder(include, folders);
 }
 
-/// A plug-in's files but those of its Module or Driver class: kernels.
+/// A plug-in's files but those of its Module or Driver class, whose names begin with the plug-in's: kernels.
 std::vector<std::string> kernels_of(const std::string& folder)
 {
   const auto name = last_part(folder);
   auto files = sources_under(folder);
   std::erase_if(files, [&](const auto& file) {
     const auto leaf = last_part(file);
-    return leaf == name + ".hpp" || leaf == name + ".cpp" || leaf == name + "_driver.cpp" || leaf == "plugin.cpp";
+    return leaf == name + ".hpp" || leaf == name + ".cpp" || starts_with(leaf, name + "_") || leaf == "plugin.cpp";
   });
   return files;
 }

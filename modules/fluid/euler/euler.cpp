@@ -1,7 +1,6 @@
 #include "euler.hpp"
 
 #include "mesh_input.hpp"
-#include "saved_state.hpp"
 
 #include "files/file_error.hpp"
 #include "files/hand_out.hpp"
@@ -40,11 +39,6 @@ std::vector<Index> wall_faces_of(const Mesh<2>& mesh, int n_moving)
   };
   std::sort(faces.begin(), faces.end(), [&](Index l, Index r) { return key(l) < key(r); });
   return faces;
-}
-
-const FaceNodes<2>& nodes_of(const Mesh<2>& mesh, Index boundary_face)
-{
-  return mesh.face_nodes[static_cast<std::size_t>(mesh.boundary[static_cast<std::size_t>(boundary_face)].face)];
 }
 
 ElementType element_type(Shape shape) { return static_cast<ElementType>(static_cast<std::uint32_t>(shape)); }
@@ -138,7 +132,7 @@ void Euler::define(const TimeStep& initial)
   for (const auto& block : source.blocks) volume.blocks.push_back({element_type(block.shape), block.connectivity});
   std::vector<Index> wall_nodes;
   for (const Index b : wall_faces_)
-    for (const Index node : nodes_of(mesh, b)) wall_nodes.push_back(node);
+    for (const Index node : mesh.boundary_nodes(b)) wall_nodes.push_back(node);
   std::sort(wall_nodes.begin(), wall_nodes.end());
   wall_nodes.erase(std::unique(wall_nodes.begin(), wall_nodes.end()), wall_nodes.end());
   const auto n_wall_nodes = static_cast<Eigen::Index>(wall_nodes.size());
@@ -148,9 +142,9 @@ void Euler::define(const TimeStep& initial)
   Connectivity lines(2, static_cast<Eigen::Index>(wall_faces_.size()));
   for (std::size_t f = 0; f < wall_faces_.size(); ++f)
     for (std::size_t k = 0; k < 2; ++k)
-      lines(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(f)) =
-          static_cast<Index>(std::lower_bound(wall_nodes.begin(), wall_nodes.end(), nodes_of(mesh, wall_faces_[f])[k]) -
-                             wall_nodes.begin());
+      lines(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(f)) = static_cast<Index>(
+          std::lower_bound(wall_nodes.begin(), wall_nodes.end(), mesh.boundary_nodes(wall_faces_[f])[k]) -
+          wall_nodes.begin());
   if (!wall_faces_.empty()) wall.blocks.push_back({ElementType::line2, lines});
   make_window("volume", {volume});
   make_window("wall", {wall});
@@ -237,123 +231,6 @@ void Euler::build(const MeshSource<2>& source)
                   "{} has an area of {} m^2: a cell needs some, and its nodes go round it counterclockwise",
                   place_of(outcome.cell, source.nodes), outcome.value);
   placed_ = source.nodes;
-}
-
-std::vector<Condition<2>> Euler::conditions() const
-{
-  const double g = options_.gamma;
-  const double c = sound_speed<2>(scheme_.gas, free_stream_);
-  const double heat = 1.0 + 0.5 * (g - 1.0) * square_of_velocity<2>(free_stream_) / (c * c); // T_0 / T
-  Condition<2> condition;
-  condition.state = free_stream_;
-  condition.total_pressure =
-      options_.total_pressure > 0.0 ? options_.total_pressure : options_.pressure * std::pow(heat, g / (g - 1.0));
-  condition.total_sound_speed = options_.total_temperature > 0.0
-                                    ? std::sqrt(g * options_.gas_constant * options_.total_temperature)
-                                    : c * std::sqrt(heat);
-  condition.pressure = options_.outflow_pressure > 0.0 ? options_.outflow_pressure : options_.pressure;
-  std::vector<Condition<2>> conditions;
-  for (const auto kind : patches_.kinds) {
-    conditions.push_back(condition);
-    conditions.back().kind = kind;
-    if (kind != Kind::prescribed) continue;
-    using TimeFunction = std::function<Values<2>(const Vec<2>&, double)>;
-    conditions.back().function = with_code(Errc::config, [&]() -> TimeFunction {
-      return state_function("prescribed", options_.prescribed_density, options_.prescribed_velocity,
-                            options_.prescribed_pressure);
-    });
-  }
-  return conditions;
-}
-
-std::function<Values<2>(const Vec<2>&, double)> Euler::state_function(const char* what, const std::string& density,
-                                                                      const std::string& velocity,
-                                                                      const std::string& pressure) const
-{
-  using expressions::Along, expressions::Expression, expressions::VectorExpression;
-  struct Functions {
-    std::optional<Expression> density, pressure;
-    std::optional<VectorExpression> velocity;
-  };
-  auto functions = std::make_shared<Functions>();
-  const auto compile = [&](const char* part, auto&& make) {
-    try {
-      make();
-    } catch (const expressions::ExpressionError& error) {
-      throw Error(Errc::config, fmt::format("{}_{}: {}", what, part, error.what()));
-    }
-  };
-  if (!density.empty()) compile("density", [&] { functions->density.emplace(density); });
-  if (!velocity.empty())
-    compile("velocity", [&] { functions->velocity.emplace(velocity, Along::components, Eigen::Index{2}); });
-  if (!pressure.empty()) compile("pressure", [&] { functions->pressure.emplace(pressure); });
-  return [functions, free = free_stream_, name = std::string(what)](const Vec<2>& x, double t) {
-    try {
-      auto w = free;
-      if (functions->density) w[0] = (*functions->density)(x, t);
-      if (functions->velocity) {
-        const Eigen::VectorXd u = (*functions->velocity)(x, Eigen::Vector2d::Zero(), t);
-        w[1] = u[0];
-        w[2] = u[1];
-      }
-      if (functions->pressure) w[3] = (*functions->pressure)(x, t);
-      MULLION_REQUIRE(is_gas<2>(w), Errc::numeric,
-                      "{}: at ({}, {}) m and t = {} s the density is {} kg/m^3 and the pressure {} Pa; both must be "
-                      "positive",
-                      name, x.x(), x.y(), t, w[0], w[3]);
-      return w;
-    } catch (const expressions::ExpressionError& error) {
-      throw Error(Errc::numeric, fmt::format("{}: {}", name, error.what()));
-    }
-  };
-}
-
-void Euler::set_first_state(const MeshSource<2>& source, double t)
-{
-  const auto& geometry = solver_->geometry();
-  const auto& order = solver_->mesh().order;
-  if (options_.initial_file.empty()) {
-    const auto state =
-        state_function("initial", options_.initial_density, options_.initial_velocity, options_.initial_pressure);
-    set_amounts<2>(
-        source, solver_->mesh(), scheme_.gas, geometry.volume, geometry.centroid,
-        [&](const Vec<2>& x) { return state(x, t); },
-        options_.initial_average == "centroid" ? Average::centroid : Average::quadrature, amounts_);
-  } else {
-    MULLION_REQUIRE(options_.initial_density.empty() && options_.initial_velocity.empty() &&
-                        options_.initial_pressure.empty(),
-                    Errc::config, "initial_file and functions for the first state are given; give one of them");
-    std::vector<Vec<2>> centroid(order.size()); // as the blocks count
-    std::vector<double> volume(order.size());
-    for (std::size_t c = 0; c < order.size(); ++c) {
-      centroid[static_cast<std::size_t>(order[c])] = geometry.centroid[c];
-      volume[static_cast<std::size_t>(order[c])] = geometry.volume[c];
-    }
-    try {
-      const auto saved = saved_state(options_.initial_file, scheme_.gas, source.nodes, centroid, volume);
-      for (std::size_t c = 0; c < order.size(); ++c) amounts_[c] = saved[static_cast<std::size_t>(order[c])];
-    } catch (const SavedStateError& error) {
-      throw Error(Errc::config, std::string("initial_file: ") + error.what());
-    }
-  }
-  write_amounts();
-}
-
-void Euler::displace_mesh()
-{
-  if (options_.initial_mesh_displacement.empty()) return;
-  using expressions::Along, expressions::VectorExpression;
-  auto nodes = coordinates_.now();
-  try {
-    const VectorExpression displacement(options_.initial_mesh_displacement, Along::components, Eigen::Index{2});
-    for (Eigen::Index i = 0; i < nodes.cols(); ++i) {
-      const Eigen::VectorXd x = nodes.col(i);
-      nodes.col(i) += displacement(x, Eigen::Vector2d::Zero(), 0.0);
-    }
-  } catch (const expressions::ExpressionError& error) {
-    throw Error(Errc::config, std::string("initial_mesh_displacement: ") + error.what());
-  }
-  place(nodes);
 }
 
 void Euler::read_amounts(bool committed)
@@ -516,81 +393,6 @@ void Euler::require(const Outcome<2>& outcome, const NodeArray& nodes, double dt
               fmt::format("{} has a density of {:.4g} kg/m^3 and a pressure of {:.4g} Pa, both must be positive; a "
                           "smaller step, a limiter, or a first state closer to the flow may help",
                           where, outcome.state[0], outcome.state[3]));
-}
-
-void Euler::write_outputs(const TimeStep&, const StepSums& sums, const NodeArray& wall_velocity)
-{
-  const auto coordinates = coordinates_.values();
-  const auto& mesh = solver_->mesh();
-  auto density = density_.now(), velocity = velocity_.now(), pressure = pressure_.now(), mach = mach_.now();
-  const NodeArray nodes = coordinates;
-  const bool is_placed = placed_.cols() == nodes.cols(); // the solver's geometry is that of these nodes
-  for (std::size_t c = 0; c < mesh.n_cells; ++c) {
-    const Index e = mesh.order[c];
-    const double area = is_placed ? solver_->geometry().volume[c] : cell_shape(mesh, nodes, c).volume; // the same bits
-    const auto w = primitive<2>(scheme_.gas, amounts_[c], area);
-    density(0, e) = w[0];
-    velocity(0, e) = w[1];
-    velocity(1, e) = w[2];
-    pressure(0, e) = w[3];
-    mach(0, e) = std::sqrt(square_of_velocity<2>(w)) / euler::sound_speed<2>(scheme_.gas, w);
-  }
-  const auto mass = mass_.values(), energy = energy_.values();
-  double total_mass = 0.0, total_energy = 0.0;
-  for (Eigen::Index e = 0; e < mass.cols(); ++e) {
-    total_mass += mass(0, e);
-    total_energy += energy(0, e);
-  }
-  total_mass_.now()(0, 0) = total_mass;
-  total_energy_.now()(0, 0) = total_energy;
-  max_cfl_.now()(0, 0) = sums.courant;
-  if (options_.time_stepping != "local" || sums.courant == 0.0) residual_.now()(0, 0) = sums.courant == 0.0 ? 1.0 : 0.0;
-
-  const auto faces = wall_faces<2>(mesh, scheme_, amounts_, nodes, wall_velocity, wall_faces_);
-  auto traction = traction_.now(), traction_mean = traction_mean_.now(), wall_pressure = wall_pressure_.now(),
-       normal = normal_.now(), gradient = pressure_gradient_.now(), sound = sound_speed_.now(),
-       spacing = wall_spacing_.now(), nodal = nodal_traction_.now(), nodal_mean = nodal_traction_mean_.now(),
-       load = load_.now(), load_mean = load_mean_.now();
-  nodal.setZero();
-  nodal_mean.setZero();
-  load.setZero();
-  load_mean.setZero();
-  std::vector<double> length(static_cast<std::size_t>(load.cols()), 0.0);
-  Vec<2> force = Vec<2>::Zero();
-  const auto volume_node = field("wall", "volume_node").indices();
-  const auto wall_node = [&](Index node) {
-    return std::lower_bound(volume_node.data(), volume_node.data() + volume_node.size(), node) - volume_node.data();
-  };
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    const auto& face = faces[f];
-    const auto e = static_cast<Eigen::Index>(f);
-    const Vec<2> n = face.area.normalized();
-    const double mean = sums.mean_pressure.empty() ? face.pressure : sums.mean_pressure[f];
-    traction.col(e) = (face.pressure - options_.reference_pressure) * n;
-    traction_mean.col(e) = (mean - options_.reference_pressure) * n;
-    wall_pressure(0, e) = face.pressure;
-    normal.col(e) = n;
-    gradient(0, e) = options_.gradient == "cell" ? face.cell_gradient : face.gradient;
-    sound(0, e) = face.sound_speed;
-    spacing(0, e) = 2.0 * face.distance;
-    const double size = face.area.norm();
-    force += size * traction.col(e);
-    for (const Index node : nodes_of(mesh, wall_faces_[f])) {
-      const auto i = wall_node(node);
-      load.col(i) += 0.5 * size * traction.col(e);
-      load_mean.col(i) += 0.5 * size * traction_mean.col(e);
-      nodal.col(i) += size * traction.col(e);
-      nodal_mean.col(i) += size * traction_mean.col(e);
-      length[static_cast<std::size_t>(i)] += size;
-    }
-  }
-  for (Eigen::Index i = 0; i < load.cols(); ++i) {
-    nodal.col(i) /= length[static_cast<std::size_t>(i)];
-    nodal_mean.col(i) /= length[static_cast<std::size_t>(i)];
-  }
-  force_.now().col(0) = force;
-  impulse_.now().col(0) = sums.impulse;
-  work_.now()(0, 0) = sums.work;
 }
 
 double Euler::max_dt()

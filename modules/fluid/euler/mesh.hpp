@@ -82,6 +82,11 @@ template <int D> struct Mesh {
   std::vector<std::uint8_t> face_shift, stencil_shift;
 
   [[nodiscard]] bool is_periodic() const { return !face_shift.empty(); }
+  /// @param b  number of a boundary face
+  [[nodiscard]] const FaceNodes<D>& boundary_nodes(Index b) const
+  {
+    return face_nodes[static_cast<std::size_t>(boundary[static_cast<std::size_t>(b)].face)];
+  }
 };
 
 /// What a mesh is built from.
