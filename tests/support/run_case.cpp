@@ -115,7 +115,7 @@ std::unique_ptr<Process> RunFolder::start_command(const std::vector<std::string>
 {
   std::vector<std::string> command = {MULLION_BUILD_DIR "/bin/mullion"};
   command.insert(command.end(), arguments.begin(), arguments.end());
-  return std::make_unique<Process>(command, options(std::chrono::seconds(60)));
+  return std::make_unique<Process>(command, options(std::chrono::minutes(4)));
 }
 
 ProcessResult RunFolder::command(const std::vector<std::string>& arguments) const
