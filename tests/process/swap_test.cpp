@@ -2,6 +2,7 @@
 // fails leaves none either, other parameters do what a run with them does from there on.
 #include "process/run_socket.hpp"
 #include "support/faulty_piston.hpp"
+#include "support/steered_piston.hpp"
 
 #include <doctest/doctest.h>
 
@@ -36,50 +37,9 @@ fs::path another_build(const test::RunFolder& folder, const std::string& plugin)
   return copy;
 }
 
-/// Long enough to be disturbed a dozen times even inline, where a step takes some microseconds.
-test::CaseRun longer_piston(const std::vector<std::string>& flags, const std::vector<std::string>& sets = {})
-{
-  std::vector<std::string> all{"run.end_time=1.8283482006601323", "output.every=15000", "output.history_every=10"};
-  all.insert(all.end(), sets.begin(), sets.end());
-  return test::piston(all, flags);
-}
-
-/// Results of the same without disturbance, made once.
-std::filesystem::path whole()
-{
-  static const test::RunFolder folder;
-  static const bool is_made = [] {
-    auto run = longer_piston({"--inline"}, {"run.name=whole"});
-    run.out = "whole";
-    return folder.run(run).exit_code == 0;
-  }();
-  REQUIRE(is_made);
-  return folder / "whole";
-}
-
-/// End a live run, whose results must be the first part of the undisturbed run's.
-void check_undisturbed(const test::RunFolder& folder, test::Process& run)
-{
-  run.send(SIGINT);
-  const auto result = run.wait();
-  CHECK_MESSAGE(result.exit_code == 0, result.err);
-  CHECK(test::last_step(folder / "out") > 0);
-  CHECK(test::difference_of_part(folder / "out", whole()) == "");
-  test::check_nothing_left(folder);
-}
-
 void rest_a_moment(std::mt19937& random)
 {
   std::this_thread::sleep_for(std::chrono::microseconds(std::uniform_int_distribution(0, 20'000)(random)));
-}
-
-std::vector<std::string> events(const test::RunFolder& folder)
-{
-  std::vector<std::string> found;
-  const auto record = test::read_record(folder / "out"); // must outlive the loop over it
-  for (const auto& event : record.at("attempts").at(0).at("events"))
-    found.push_back(event.at("what").get<std::string>() + " " + event.at("instance").get<std::string>());
-  return found;
 }
 
 } // namespace
@@ -92,9 +52,7 @@ TEST_CASE("a swap to the same code leaves the bytes of the results as they are, 
   const test::RunFolder folder;
   for (const char* where : {"--inline", "--processes"}) {
     CAPTURE(where);
-    fs::remove_all(folder / "out");
-    const auto run = folder.start(longer_piston({where}));
-    REQUIRE(folder.wait_for_step(test::piston_name, 5));
+    const auto run = test::live_piston(folder, {where});
 
     for (int module = 0; module < 4; ++module) {
       rest_a_moment(random);
@@ -111,8 +69,8 @@ TEST_CASE("a swap to the same code leaves the bytes of the results as they are, 
     }
     const auto processes = folder.processes();
     CHECK(processes.size() == (where == std::string("--inline") ? 2 : 6)); // those that were parked have gone
-    check_undisturbed(folder, *run);
-    CHECK(events(folder) ==
+    test::check_undisturbed(folder, *run);
+    CHECK(test::events(folder) ==
           std::vector<std::string>{"swap fluid", "swap structure", "swap mesh_motion", "swap transfer"});
   }
 }
@@ -163,9 +121,7 @@ TEST_CASE("a candidate that does not fit, or cannot attach, is refused with the 
   const test::RunFolder folder;
   for (const char* where : {"--inline", "--processes"}) {
     CAPTURE(where);
-    fs::remove_all(folder / "out");
-    const auto run = folder.start(longer_piston({where}));
-    REQUIRE(folder.wait_for_step(test::piston_name, 5));
+    const auto run = test::live_piston(folder, {where});
 
     for (const auto& refusal : refusals(folder)) {
       CAPTURE(refusal.what);
@@ -176,16 +132,15 @@ TEST_CASE("a candidate that does not fit, or cannot attach, is refused with the 
       CHECK(test::error_messages(swap).size() == 1);
       CHECK_MESSAGE(has(swap.err, refusal.reason), swap.err);
     }
-    check_undisturbed(folder, *run);
-    CHECK(events(folder).empty());
+    test::check_undisturbed(folder, *run);
+    CHECK(test::events(folder).empty());
   }
 }
 
 TEST_CASE("a candidate in a process may die or write into the windows while it attaches: it has no right to")
 {
   const test::RunFolder folder;
-  const auto run = folder.start(longer_piston({"--processes"}));
-  REQUIRE(folder.wait_for_step(test::piston_name, 5));
+  const auto run = test::live_piston(folder, {"--processes"});
   for (const auto& [fault, reason] :
        std::vector<std::pair<std::string, std::string>>{{"abort", "was killed by signal 6 (SIGABRT), in attach"},
                                                         {"exit", "exited with code 3, in attach"},
@@ -196,7 +151,7 @@ TEST_CASE("a candidate in a process may die or write into the windows while it a
     CHECK(swap.exit_code == 2);
     CHECK_MESSAGE(has(swap.err, reason), swap.err);
   }
-  check_undisturbed(folder, *run);
+  test::check_undisturbed(folder, *run);
 }
 
 namespace {
@@ -216,8 +171,7 @@ bool wait_for_candidate(const test::RunFolder& folder)
 TEST_CASE("a candidate in a process that attaches slowly does not hold the run, and what it derived is of the exchange")
 {
   const test::RunFolder folder;
-  const auto run = folder.start(longer_piston({"--processes"}));
-  REQUIRE(folder.wait_for_step(test::piston_name, 5));
+  const auto run = test::live_piston(folder, {"--processes"});
   // The second derives from what is committed when it attaches, and its first step looks whether it still is.
   for (const char* fault : {"slow", "derive"}) {
     CAPTURE(fault);
@@ -235,14 +189,13 @@ TEST_CASE("a candidate in a process that attaches slowly does not hold the run, 
     CHECK(has(result.out, "; at work from step "));
     CHECK(folder.processes().size() == 6);
   }
-  check_undisturbed(folder, *run);
+  test::check_undisturbed(folder, *run);
 }
 
 TEST_CASE("while a candidate attaches a checkpoint is written, other changes wait, and the end of the run ends it")
 {
   const test::RunFolder folder;
-  const auto run = folder.start(longer_piston({"--processes"}));
-  REQUIRE(folder.wait_for_step(test::piston_name, 5));
+  const auto run = test::live_piston(folder, {"--processes"});
   const auto swap = folder.start_command(
       {"swap", test::piston_name, "structure=faulty_structure", "--set", "fault=hang", "--set", "at=attach"});
   REQUIRE(wait_for_candidate(folder));
@@ -253,7 +206,7 @@ TEST_CASE("while a candidate attaches a checkpoint is written, other changes wai
   CHECK_MESSAGE(checkpoint.exit_code == 0, checkpoint.err);
   CHECK(swap->is_running());
   CHECK(set->is_running());
-  check_undisturbed(folder, *run);
+  test::check_undisturbed(folder, *run);
   const auto swapped = swap->wait(), changed = set->wait();
   CHECK(swapped.exit_code == 1);
   CHECK_MESSAGE(has(swapped.err, "the run ended before the candidate had attached"), swapped.err);
@@ -264,8 +217,7 @@ TEST_CASE("while a candidate attaches a checkpoint is written, other changes wai
 TEST_CASE("a candidate that never attaches is killed at the deadline, and one that is killed is refused")
 {
   const test::RunFolder folder;
-  const auto run = folder.start(longer_piston({"--processes"}, {"run.start_deadline=4"}));
-  REQUIRE(folder.wait_for_step(test::piston_name, 5));
+  const auto run = test::live_piston(folder, {"--processes"}, {"run.start_deadline=4"});
   const auto before = folder.processes();
   const auto hang = [&] {
     return folder.start_command(
@@ -290,7 +242,7 @@ TEST_CASE("a candidate that never attaches is killed at the deadline, and one th
   CHECK(dead.exit_code == 2);
   CHECK_MESSAGE(has(dead.err, "was killed by signal 9 (SIGKILL)"), dead.err);
   CHECK(folder.processes().size() == 6);
-  check_undisturbed(folder, *run);
+  test::check_undisturbed(folder, *run);
 }
 
 TEST_CASE(
@@ -299,9 +251,7 @@ TEST_CASE(
   const test::RunFolder folder;
   for (const char* where : {"--inline", "--processes"}) {
     CAPTURE(where);
-    fs::remove_all(folder / "out");
-    const auto run = folder.start(longer_piston({where}));
-    REQUIRE(folder.wait_for_step(test::piston_name, 5));
+    const auto run = test::live_piston(folder, {where});
 
     const auto set = folder.command({"set", test::piston_name, "structure.damping=1e4"});
     const auto swap = folder.command({"swap", test::piston_name, "structure=faulty_structure", "--set", "damping=1e4"});
@@ -313,8 +263,8 @@ TEST_CASE(
     CHECK_MESSAGE(swap.exit_code == 0, swap.err);
     CHECK(has(swap.out, ", damping = 1e4; at work from step "));
     CHECK_MESSAGE(result.exit_code == 0, result.err);
-    CHECK(test::difference_of_part(folder / "out", whole()) != ""); // it is at work
-    CHECK(folder.is_deserted_within(1s));                           // no process that defined is left
+    CHECK(test::difference_of_part(folder / "out", test::whole_piston()) != ""); // it is at work
+    CHECK(folder.is_deserted_within(1s));                                        // no process that defined is left
   }
 }
 
@@ -336,9 +286,7 @@ TEST_CASE("when a candidate fails in its first step, the one before it takes ove
       {"stray_write", "after a write into the read-only window structure/wet.in", false}};
   for (const char* where : {"--inline", "--processes"}) {
     CAPTURE(where);
-    fs::remove_all(folder / "out");
-    const auto run = folder.start(longer_piston({where}, {"run.call_deadline=0.5"}));
-    REQUIRE(folder.wait_for_step(test::piston_name, 5));
+    const auto run = test::live_piston(folder, {where}, {"run.call_deadline=0.5"});
 
     for (const auto& failure : failures) {
       if (where == std::string("--inline") && !failure.is_inline_too) continue;
@@ -349,8 +297,8 @@ TEST_CASE("when a candidate fails in its first step, the one before it takes ove
       CHECK_MESSAGE(has(swap.err, " taken back, the one before it does step "), swap.err);
     }
     CHECK(folder.processes().size() == (where == std::string("--inline") ? 2 : 6));
-    check_undisturbed(folder, *run);
-    CHECK(events(folder).front() == "swap taken back structure");
+    test::check_undisturbed(folder, *run);
+    CHECK(test::events(folder).front() == "swap taken back structure");
   }
 }
 
@@ -359,61 +307,13 @@ TEST_CASE("a run that is swapped and replayed, or redone by fresh processes, in 
   const test::RunFolder folder;
   for (const auto& flags :
        {std::vector<std::string>{"--replay", "--processes"}, {"--replay", "--inline"}, {"--amnesia", "7"}}) {
-    fs::remove_all(folder / "out");
-    const auto run = folder.start(longer_piston(flags));
-    REQUIRE(folder.wait_for_step(test::piston_name, 5));
+    const auto run = test::live_piston(folder, flags);
     for (const int module : {0, 1, 2, 3, 1}) {
       const auto swap =
           folder.command({"swap", test::piston_name, std::string(test::instances[module]) + "=" + plugins[module]});
       CHECK_MESSAGE(swap.exit_code == 0, swap.err);
     }
-    check_undisturbed(folder, *run);
-  }
-}
-
-TEST_CASE("set changes what is declared changeable from the next step on, and a run with other parameters differs")
-{
-  const test::RunFolder folder;
-  auto every = test::piston({"run.name=every", "run.end_time=0.6094494002200441", "output.every=0"}, {"--inline"});
-  every.out = "every";
-  REQUIRE(folder.run(every).exit_code == 0);
-  for (const char* where : {"--inline", "--processes"}) {
-    CAPTURE(where);
-    fs::remove_all(folder / "out");
-    const auto run = folder.start(longer_piston({where}, {"output.history_every=1"}));
-    REQUIRE(folder.wait_for_step(test::piston_name, 5));
-
-    const auto same = folder.command({"set", test::piston_name, "structure.mass=520", "structure.stiffness=1.4e7"});
-    const auto refused = folder.command({"set", test::piston_name, "structure.origin=2.0"});
-    const auto two_tables = folder.command({"set", test::piston_name, "structure.mass=3", "driver.alpha=0.5"});
-    const auto before = folder.steps_of(test::piston_name);
-    const auto driver = folder.command({"set", test::piston_name, "driver.alpha=0.25"});
-    run->send(SIGINT);
-    const auto result = run->wait();
-
-    CHECK_MESSAGE(same.exit_code == 0, same.err);
-    CHECK(same.out == "structure: mass = 520, stiffness = 1.4e7\n");
-    CHECK(refused.exit_code == 2);
-    CHECK_MESSAGE(has(refused.err, "'structure' (faulty_structure) does not declare 'origin' as changeable: it may "
-                                   "shape windows or first states, which a live run keeps; changeable are mass, "),
-                  refused.err);
-    CHECK(two_tables.exit_code == 2);
-    CHECK_MESSAGE(driver.exit_code == 0, driver.err);
-    CHECK_MESSAGE(result.exit_code == 0, result.err);
-    CHECK(events(folder) == std::vector<std::string>{"set structure", "set driver"});
-    const auto event = test::read_record(folder / "out").at("attempts").at(0).at("events").at(1);
-    const auto changed_at = event.at("step").get<long long>(); // the first step with it
-    CHECK(changed_at > before);
-    // Up to there the bytes are the whole run's, from there on they are not.
-    const auto lines_until = [](const std::string& text, long long step) {
-      std::size_t end = 0;
-      for (long long line = 0; line <= step + 1; ++line) end = text.find('\n', end) + 1; // a header, and step 0
-      return text.substr(0, end);
-    };
-    const auto here = test::read_file(folder / "out/history.csv");
-    const auto whole = test::read_file(folder / "every/history.csv");
-    CHECK(lines_until(here, changed_at - 1) == lines_until(whole, changed_at - 1));
-    CHECK(lines_until(here, changed_at) != lines_until(whole, changed_at));
+    test::check_undisturbed(folder, *run);
   }
 }
 
@@ -422,9 +322,7 @@ TEST_CASE("another plug-in with the same windows goes on from them, with its own
   const test::RunFolder folder;
   for (const char* where : {"--inline", "--processes"}) {
     CAPTURE(where);
-    fs::remove_all(folder / "out");
-    const auto run = folder.start(longer_piston({where}));
-    REQUIRE(folder.wait_for_step(test::piston_name, 5));
+    const auto run = test::live_piston(folder, {where});
 
     const auto swap = folder.command({"swap", test::piston_name, "structure=twin_structure", "--set", "origin=1.0"});
     const auto modules = folder.command({"inspect", test::piston_name});
@@ -434,75 +332,8 @@ TEST_CASE("another plug-in with the same windows goes on from them, with its own
     CHECK(has(swap.out, "structure: twin_structure 0.1.0 for faulty_structure 0.1.0, from "));
     CHECK(has(modules.out, "structure      structure      twin_structure "));
     CHECK_MESSAGE(back.exit_code == 0, back.err);
-    check_undisturbed(folder, *run); // its defaults are those of the case
+    test::check_undisturbed(folder, *run); // its defaults are those of the case
   }
-}
-
-TEST_CASE("parameters that are set at a step do the same inline and in processes, to the last bit")
-{
-  const test::RunFolder folder;
-  auto clean = test::piston({"run.name=clean"}, {"--inline"});
-  clean.out = "clean";
-  REQUIRE(folder.run(clean).exit_code == 0);
-  for (const char* where : {"--inline", "--processes"}) {
-    auto run = test::piston({"structure.fault=slow", "structure.at_step=20", "structure.duration=1.0"}, {where});
-    run.out = std::string(where).substr(2);
-    const auto live = folder.start(run);
-    REQUIRE(folder.wait_for_step(test::piston_name, 19)); // step 20 takes a second: the command waits for its end
-
-    const auto mass = folder.start_command({"set", test::piston_name, "structure.mass=600"});
-
-    CHECK(mass->wait().exit_code == 0);
-    CHECK(live->wait().exit_code == 0);
-  }
-  CHECK(test::difference(folder / "inline", folder / "processes") == "");
-  const auto here = test::read_file(folder / "inline/history.csv");
-  const auto there = test::read_file(folder / "clean/history.csv");
-  const auto same = std::mismatch(here.begin(), here.end(), there.begin(), there.end()).first - here.begin();
-  CHECK(std::count(here.begin(), here.begin() + same, '\n') == 22); // the header, and steps 0 to 20
-}
-
-TEST_CASE("set refuses driver parameters that would connect other fields, and unknown ones with the near name")
-{
-  const test::RunFolder folder;
-  const auto run = folder.start(longer_piston({"--processes"}));
-  REQUIRE(folder.wait_for_step(test::piston_name, 5));
-
-  for (const auto& [set, reason] : std::vector<std::pair<std::string, std::string>>{
-           {"driver.motion=displacement", "driver css does not declare 'motion' as changeable"},
-           {"driver.alhpa=0.5", "driver css has no parameter 'alhpa'; did you mean 'alpha'?"},
-           {"driver.alpha=2", "alpha = 2 is out of range; expected a number in [0, 1]"},
-           {"structre.mass=1", "the run has no module 'structre'; did you mean 'structure'?"},
-           {"run.dt=1", "run.dt cannot be changed in a live run; of the run itself run.end_time and output.every can"},
-           {"run.end_time=-1", "run.end_time = -1 s is not behind the run"},
-           {"output.every=0", "output.every = 0: expected a number of steps >= 1"},
-           {"mass=1", "'mass=1' names no table; write instance.parameter=VALUE"},
-           {"structure.mass", "'structure.mass' has no '='"}}) {
-    const auto result = folder.command({"set", test::piston_name, set});
-    CHECK_MESSAGE(result.exit_code == 2, set);
-    CHECK_MESSAGE(has(result.err, reason), result.err);
-  }
-  check_undisturbed(folder, *run);
-}
-
-TEST_CASE("driver parameters that let the first step fail are taken back, and the bytes are the same")
-{
-  const test::RunFolder folder;
-  auto clean = test::long_piston({"driver.scheme=strong", "run.name=clean"}, {"--inline"});
-  clean.out = "clean";
-  REQUIRE(folder.run(clean).exit_code == 0);
-  const auto run = folder.start(test::long_piston({"driver.scheme=strong"}, {"--processes"}));
-  REQUIRE(folder.wait_for_step(test::piston_name, 5));
-
-  const auto set = folder.command({"set", test::piston_name, "driver.max_iterations=1"});
-  run->send(SIGINT);
-  const auto result = run->wait();
-
-  CHECK(set.exit_code == 1);
-  CHECK_MESSAGE(has(set.err, "set driver (max_iterations = 1) taken back, the one before it does step "), set.err);
-  CHECK_MESSAGE(has(set.err, " has not converged after 1 iteration"), set.err);
-  CHECK_MESSAGE(result.exit_code == 0, result.err);
-  CHECK(test::difference_of_part(folder / "out", folder / "clean") == "");
 }
 
 TEST_CASE("a line that is no command of a run is answered with the nearest one")
@@ -520,31 +351,6 @@ TEST_CASE("a line that is no command of a run is answered with the nearest one")
   CHECK(no_json.contains("error"));
   CHECK(no_target.contains("error"));
   CHECK(run->wait().exit_code == 0);
-}
-
-TEST_CASE("run.end_time and output.every can be set: the results are those of a case that says so")
-{
-  const test::RunFolder folder;
-  test::run_whole(folder);
-  // 20,000 steps and 7, the last of them shortened to half: css takes that.
-  const std::string end = "run.end_time=0.12192949425502311";
-  auto longer = test::long_piston({end}, {"--inline"});
-  longer.out = "longer";
-  longer.sets.emplace_back("run.name=longer");
-  REQUIRE(folder.run(longer).exit_code == 0);
-  const auto run = folder.start(test::long_piston());
-  REQUIRE(folder.wait_for_step(test::piston_name, 5));
-
-  const auto set = folder.command({"set", test::piston_name, end});
-  const auto every = folder.command({"set", test::piston_name, "output.every=1000"}); // as it was
-  const auto result = run->wait();
-
-  CHECK_MESSAGE(set.exit_code == 0, set.err);
-  CHECK_MESSAGE(every.exit_code == 0, every.err);
-  CHECK_MESSAGE(result.exit_code == 0, result.err);
-  CHECK(test::last_step(folder / "out") == test::last_step(folder / "longer"));
-  CHECK(test::last_step(folder / "out") > 20000);
-  CHECK(test::difference(folder / "out", folder / "longer") == "");
 }
 
 TEST_CASE("commands to a run that is not there, and to one that ends meanwhile")

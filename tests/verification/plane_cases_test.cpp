@@ -86,6 +86,20 @@ double lag_law(double frequency, double lag)
   return two_pi * frequency * lag * two_pi * (frequency - 574.199);
 }
 
+/// A flat wall radiates 13.3 1/s, and so decays the arch within a tenth, 1.4 to 1.9 Hz below its 574.2; a lag of half a
+/// step (css) adds damping of some 0.2 1/s to that, as the gas that goes along with the arch is a mass.
+void check_open_duct(const Rate& neutral, const Rate& lagging)
+{
+  for (const auto& rate : {neutral, lagging}) {
+    CHECK(rate.sigma > -14.5);
+    CHECK(rate.sigma < -11.0);
+    CHECK(rate.frequency > 571.8);
+    CHECK(rate.frequency < 573.2);
+  }
+  CHECK(lagging.sigma - neutral.sigma > -0.30);
+  CHECK(lagging.sigma - neutral.sigma < -0.08);
+}
+
 const Sets subcycled = {"run.dt=5e-5", "fluid.substeps=5"};
 
 /// A field of the last result file, (components x entities) one after the other.
@@ -254,14 +268,7 @@ TEST_SUITE("full")
   {
     const auto neutral = rate_of("flow_shell", irregular_duct + iss);
     const auto lagging = rate_of("flow_shell", irregular_duct + css);
-    for (const auto& rate : {neutral, lagging}) {
-      CHECK(rate.sigma > -14.5);
-      CHECK(rate.sigma < -11.0);
-      CHECK(rate.frequency > 571.8);
-      CHECK(rate.frequency < 573.2);
-    }
-    CHECK(lagging.sigma - neutral.sigma > -0.30);
-    CHECK(lagging.sigma - neutral.sigma < -0.08);
+    check_open_duct(neutral, lagging);
   }
 
   TEST_CASE("the arch of half the duct's frequency decays as theory and another program say")
@@ -290,14 +297,7 @@ TEST_SUITE("full")
   {
     const auto neutral = rate_of("flow_shell", iss);
     const auto lagging = rate_of("flow_shell", css);
-    for (const auto& rate : {neutral, lagging}) {
-      CHECK(rate.sigma > -14.5);
-      CHECK(rate.sigma < -11.0);
-      CHECK(rate.frequency > 571.8);
-      CHECK(rate.frequency < 573.2);
-    }
-    CHECK(lagging.sigma - neutral.sigma > -0.30);
-    CHECK(lagging.sigma - neutral.sigma < -0.08);
+    check_open_duct(neutral, lagging);
     const auto coarse = rate_of("flow_shell", css + subcycled);
     CHECK(coarse.sigma > -14.5);
     CHECK(coarse.sigma < -11.0);
