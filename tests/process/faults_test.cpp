@@ -118,7 +118,7 @@ TEST_CASE("a module that hangs is killed at its deadline")
   }
 }
 
-TEST_CASE("a value that is not finite is named when the call that made it returns")
+TEST_CASE("a value that is not finite is named with the call that made it")
 {
   for (const char* where : {"--processes", "--inline"})
     for (const auto& place : places) {
@@ -128,10 +128,8 @@ TEST_CASE("a value that is not finite is named when the call that made it return
 
       const auto result = folder.run(faulty("not_a_number", place.at, {where}));
 
-      // define: the fields that others read are known only later, the first call after that finds it
       test::check_failed(folder, result, 1,
-                         {"module 'structure' (faulty_structure",
-                          place.at == "step" ? place.told : "in start, before the first step",
+                         {"module 'structure' (faulty_structure", place.told,
                           "structure/wet.velocity[0, 0] = nan (component, entity): not a finite number"});
     }
 }

@@ -273,6 +273,8 @@ private:
   [[nodiscard]] static const char* call_name(const Module& module); ///< that it is in, or was in last
 
   // session_checks.cpp
+  /// @throws Error what define left for others to read is not finite
+  void check_first_state();
   void check_later(std::uint32_t module); ///< what its runtime left of its last call
   /// Wait for the first checks of this attempt. @throws Error the first value, in write order, that is not finite
   void settle(std::size_t n_checks);

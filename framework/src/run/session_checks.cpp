@@ -22,6 +22,21 @@ void Session::check_later(std::uint32_t index)
   }
 }
 
+void Session::check_first_state()
+{
+  for (const auto& module : modules_) {
+    const auto& record = control_.modules[static_cast<std::size_t>(&module - modules_.data())];
+    for (std::uint32_t i = 0; i < record.n_exchanged; ++i) {
+      const FieldAddress field{record.exchanged[i].window, record.exchanged[i].field};
+      const auto values = read(field, 0);
+      const auto bad = shm::first_not_finite(values.data(), values.size());
+      MULLION_REQUIRE(bad < 0, Errc::numeric, "{} failed in define, before the first step: {}", who(module),
+                      shm::describe_not_finite(control_.windows[field.window].name,
+                                               windows_.view(field.window).fields()[field.field], values.data(), bad));
+    }
+  }
+}
+
 void Session::settle(std::size_t n_checks)
 {
   for (; n_settled_ < n_checks; ++n_settled_) {

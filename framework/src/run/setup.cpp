@@ -70,6 +70,7 @@ void Session::start_fresh()
   find_conflicts();
   (void)make_driver();
   attach_all(initial);
+  check_first_state();
 
   shm::roll_back(control_);
   if (state_window_ != shm::no_window) control_.working[state_window_].is_written = 1;

@@ -173,6 +173,13 @@ void Euler::attach()
   if (!solver_) build(source_of_windows());
 }
 
+void Euler::start(const TimeStep& initial)
+{
+  if (!node_velocity_.is_connected()) return;
+  read_amounts(false);
+  write_outputs(initial, {}, node_velocity_.at(initial.end)); // define could not know how the wall moves
+}
+
 void Euler::look_up()
 {
   coordinates_ = field("volume", "coordinates");

@@ -143,6 +143,7 @@ public:
 
   void define(const TimeStep& initial) override;
   void attach() override;
+  void start(const TimeStep& initial) override;
   void step(const TimeStep& step) override;
   double max_dt();
   double write_mesh(double file);

@@ -65,9 +65,7 @@ void Euler1d::define(const TimeStep& initial)
     set_acoustic_mode(working_state(), ale_.gas, ale_.reference, mode, initial.end, // -dt/2 where the clock is offset
                       options_.length + options_.mode_amplitude);
   }
-  const double wall_velocity = 0.0;
-  const auto wall = wall_state(working_state(), ale_.gas, wall_velocity);
-  write_outputs(wall_velocity, wall.pressure, 0.0, 0.0);
+  write_first_outputs(0.0);
 }
 
 void Euler1d::attach()
@@ -77,6 +75,16 @@ void Euler1d::attach()
   workspace_.emplace(n);
   w_begin_.resize(n + 1);
   w_end_.resize(n + 1);
+}
+
+void Euler1d::start(const TimeStep& initial)
+{
+  write_first_outputs(node_velocity_.at(initial.end)(0, coordinates_.values().cols() - 1)); // define did not know it
+}
+
+void Euler1d::write_first_outputs(double wall_velocity) const
+{
+  write_outputs(wall_velocity, wall_state(working_state(), ale_.gas, wall_velocity).pressure, 0.0, 0.0);
 }
 
 void Euler1d::look_up()

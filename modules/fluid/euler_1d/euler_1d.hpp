@@ -61,12 +61,14 @@ public:
 
   void define(const TimeStep& initial) override;
   void attach() override;
+  void start(const TimeStep& initial) override;
   void step(const TimeStep& step) override;
 
 private:
   void look_up();
   [[nodiscard]] State working_state() const;
   /// Everything that is recomputed from the state: cell values, totals, wall values.
+  void write_first_outputs(double wall_velocity) const;
   void write_outputs(double wall_velocity, double mean_pressure, double work, double impulse) const;
 
   Options options_;

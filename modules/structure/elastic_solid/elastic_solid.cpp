@@ -126,7 +126,7 @@ void ElasticSolid::define(const TimeStep& initial)
   make_windows();
   look_up();
   build();
-  set_initial(initial.end);
+  set_initial(initial);
   steady_load_.now().setZero();
   write_outputs(Eigen::MatrixXd::Zero(solid_.dimension(), wet_nodes_.size()), initial.end, 0.0,
                 Eigen::VectorXd::Zero(solid_.dimension()));
@@ -151,7 +151,6 @@ void ElasticSolid::start(const TimeStep& initial)
   if (is_static()) {
     motion.displacement = static_displacement(system_, stiffness_solver(), loads, given.displacement);
   } else { // the first acceleration is in balance with the first load, which only the driver knows
-    hold(given.velocity, motion.velocity);
     motion.acceleration = given.acceleration;
     balance_acceleration(system_, mass_solver(), motion, loads);
   }
@@ -363,8 +362,9 @@ Motion ElasticSolid::working_motion() const
   return {dofs(displacement_.now()), dofs(velocity_.now()), dofs(acceleration_.now())};
 }
 
-void ElasticSolid::set_initial(double t)
+void ElasticSolid::set_initial(const TimeStep& initial)
 {
+  const double t = initial.end;
   auto motion = working_motion();
   motion.displacement.setZero();
   motion.velocity.setZero();
@@ -391,8 +391,9 @@ void ElasticSolid::set_initial(double t)
       motion.velocity.segment(i * d, d) = evaluated(v, solid_.nodes.col(i), t);
     }
   }
-  hold(given_at(t, 1.0).displacement, motion.displacement);
-  hold(Eigen::VectorXd::Zero(solid_.n_dofs()), motion.velocity); // until start(), which knows dt
+  const auto given = given_at(t, initial.dt / options_.substeps);
+  hold(given.displacement, motion.displacement);
+  hold(given.velocity, motion.velocity);
 }
 
 void ElasticSolid::hold(const Eigen::VectorXd& given, Eigen::Ref<Eigen::VectorXd> values) const

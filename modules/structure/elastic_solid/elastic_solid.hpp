@@ -138,7 +138,7 @@ private:
   void make_windows();
   void look_up();
   void build();
-  void set_initial(double t);
+  void set_initial(const TimeStep& initial);
 
   [[nodiscard]] bool is_static() const { return options_.integrator == "static"; }
   [[nodiscard]] bool is_explicit() const { return options_.integrator == "central_difference"; }

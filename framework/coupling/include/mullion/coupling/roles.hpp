@@ -179,18 +179,19 @@ struct FsiRoles {
     wall_traction = coupling.received(names.transfer + ".fluid_side." + names.exported);
   }
 
-  /// The first exchange, in the order in which the initial states need one another: the fluid's first traction on
-  /// the structure (which may need it for its first acceleration), the structure's velocity on the moving mesh.
+  /// The first exchange, in the order in which the initial states need one another: the structure's velocity (as its
+  /// define left it) on the moving mesh, the fluid's first traction on a wall that moves so, and that traction on the
+  /// structure, which may need it for its first acceleration.
   void start(const TimeStep& initial) const
   {
+    send_motion(structure_motion.now(), initial);
+    if (wiring.corrects_on_fluid) wall_velocity.put(motion_on_fluid.now(), initial.end);
+    if (has_mesh_motion) mesh_motion.start(initial);
     fluid.start(initial);
     if (wiring.corrects_on_fluid) wall_traction.put(fluid_traction.now(), initial.end);
     transfer_loads(initial);
     structure_load.put(load_on_structure.now(), initial.end);
     structure.start(initial);
-    send_motion(structure_motion.now(), initial);
-    if (wiring.corrects_on_fluid) wall_velocity.put(motion_on_fluid.now(), initial.end);
-    if (has_mesh_motion) mesh_motion.start(initial);
   }
 
   /// The wall's motion at the end of `step`, given on the structure's nodes, to the fluid's side.
