@@ -112,7 +112,7 @@ TEST_CASE("a mesh that gets poor is warned of once, and the run ends before an e
   CHECK(history.at("mesh_motion.volume.min_area_ratio").back() > 0.0);
 }
 
-TEST_CASE("sides that do not exist, or have no face, are mistakes of the case")
+TEST_CASE("sides that do not exist, have no face or are named twice are mistakes of the case")
 {
   const RunFolder folder;
   const auto unknown = folder.run(arch_run({"mesh_motion.slide=x_min, left"}));
@@ -131,4 +131,9 @@ TEST_CASE("sides that do not exist, or have no face, are mistakes of the case")
   const auto empty = folder.run(run);
   CHECK(empty.exit_code == 2);
   CHECK_MESSAGE(count(empty.err, "slide = \"y_min\": no face of the boundary lies on y_min") == 1, empty.err);
+
+  const auto twice = folder.run(arch_run({"mesh_motion.slide=x_min", "mesh_motion.free=x_max, x_min"}));
+  CHECK(twice.exit_code == 2);
+  CHECK_MESSAGE(count(twice.err, "side x_min is named twice, in slide = \"x_min\" and free = \"x_max, x_min\"") == 1,
+                twice.err);
 }

@@ -78,16 +78,20 @@ void InteriorMotion::attach()
                     mesh_.nodes.cols() - 1);
 
   measures_ = moving_mesh::element_measures(mesh_, mesh_.nodes);
-  const auto sides = sliding_sides();
+  const auto sides = moving_sides();
   const auto given = moving_mesh::constraints(mesh_, wall_nodes_, sides);
   for (std::size_t s = 0; s < sides.size(); ++s)
     MULLION_REQUIRE(given.n_faces[s] > 0, Errc::config,
-                    "slide = \"{}\": no face of the boundary lies on {}; name flat sides of the fluid's mesh",
-                    options_.slide, words_of(options_.slide)[s]);
+                    "{}: no face of the boundary lies on {}_{}; name flat sides of the fluid's mesh",
+                    sides[s].is_free ? fmt::format("free = \"{}\"", options_.free)
+                                     : fmt::format("slide = \"{}\"", options_.slide),
+                    "xyz"[sides[s].axis], sides[s].is_upper ? "max" : "min");
   solver_ = solver(mesh_, measures_, given.is_given);
-  MULLION_REQUIRE(solver_.is_regular(), Errc::shape,
-                  "part of the fluid's mesh can move without its wall and boundary; let fewer sides slide than \"{}\"",
-                  options_.slide);
+  MULLION_REQUIRE(
+      solver_.is_regular(), Errc::shape,
+      "part of the fluid's mesh can move without its wall and boundary; let fewer sides slide or be free than "
+      "slide = \"{}\", free = \"{}\"",
+      options_.slide, options_.free);
 
   velocity_ = field("volume", "velocity");
   coordinates_ = field("volume", "coordinates");
@@ -97,16 +101,24 @@ void InteriorMotion::attach()
   fluid_coordinates_ = input("volume", "coordinates");
 }
 
-std::vector<moving_mesh::Side> InteriorMotion::sliding_sides() const
+std::vector<moving_mesh::Side> InteriorMotion::moving_sides() const
 {
   std::vector<moving_mesh::Side> sides;
-  for (const auto& word : words_of(options_.slide)) {
-    const int axis = word.empty() ? -1 : static_cast<int>(std::string("xyz").find(word[0]));
-    const bool is_side = axis >= 0 && axis < mesh_.dimension && (word.substr(1) == "_min" || word.substr(1) == "_max");
-    MULLION_REQUIRE(is_side, Errc::config, "slide = \"{}\": \"{}\" is no side; there are x_min, x_max, y_min, y_max{}",
-                    options_.slide, word, mesh_.dimension == 3 ? ", z_min, z_max" : "");
-    sides.push_back({axis, word.substr(1) == "_max"});
-  }
+  for (const bool is_free : {false, true})
+    for (const auto& word : words_of(is_free ? options_.free : options_.slide)) {
+      const int axis = word.empty() ? -1 : static_cast<int>(std::string("xyz").find(word[0]));
+      const bool is_side =
+          axis >= 0 && axis < mesh_.dimension && (word.substr(1) == "_min" || word.substr(1) == "_max");
+      MULLION_REQUIRE(is_side, Errc::config, "{} = \"{}\": \"{}\" is no side; there are x_min, x_max, y_min, y_max{}",
+                      is_free ? "free" : "slide", is_free ? options_.free : options_.slide, word,
+                      mesh_.dimension == 3 ? ", z_min, z_max" : "");
+      const bool is_upper = word.substr(1) == "_max";
+      for (const auto& side : sides)
+        MULLION_REQUIRE(side.axis != axis || side.is_upper != is_upper, Errc::config,
+                        "side {} is named twice, in slide = \"{}\" and free = \"{}\"; name it once", word,
+                        options_.slide, options_.free);
+      sides.push_back({axis, is_upper, is_free});
+    }
   return sides;
 }
 

@@ -17,14 +17,17 @@ namespace mullion::interior_motion {
 
 /// Options of every such mesh motion. A plug-in's Options are these and those of its equation.
 struct CommonOptions {
-  std::string slide;
+  std::string slide, free;
 
   static constexpr auto common_table()
   {
     return std::tuple{
         parameter("slide", &CommonOptions::slide, "",
                   "flat sides along which nodes may move, with commas between: x_min, x_max, y_min, …; the "
-                  "rest of the boundary stays where it is")};
+                  "rest of the boundary stays where it is"),
+        parameter("free", &CommonOptions::free, "",
+                  "flat sides whose nodes go wherever the equation takes them, with commas between, as for slide: for "
+                  "a wall whose end moves off the side")};
   }
 };
 
@@ -47,7 +50,7 @@ protected:
                                                          const moving_mesh::IsGiven& is_given) const = 0;
 
 private:
-  [[nodiscard]] std::vector<moving_mesh::Side> sliding_sides() const;
+  [[nodiscard]] std::vector<moving_mesh::Side> moving_sides() const;
   [[nodiscard]] Eigen::MatrixXd velocity_at(double t);
   void write_quality(const moving_mesh::Quality& quality) const;
   void warn_of(const moving_mesh::Quality& quality) const;

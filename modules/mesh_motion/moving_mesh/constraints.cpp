@@ -46,26 +46,26 @@ std::vector<std::vector<Index>> boundary_faces(const MovingMesh& mesh)
   return once;
 }
 
-Constraints constraints(const MovingMesh& mesh, std::span<const Index> wall_nodes, const std::vector<Side>& sliding)
+Constraints constraints(const MovingMesh& mesh, std::span<const Index> wall_nodes, const std::vector<Side>& sides)
 {
-  Constraints result{IsGiven::Constant(mesh.dimension, mesh.nodes.cols(), false),
-                     std::vector<Index>(sliding.size(), 0)};
+  Constraints result{IsGiven::Constant(mesh.dimension, mesh.nodes.cols(), false), std::vector<Index>(sides.size(), 0)};
   const Eigen::VectorXd lower = mesh.nodes.rowwise().minCoeff(), upper = mesh.nodes.rowwise().maxCoeff();
   // Coordinates come out of files and formulas: a billionth of the extent is no distance.
   const double near = 1e-9 * (upper - lower).maxCoeff();
   for (const auto& face : boundary_faces(mesh)) {
-    bool is_sliding = false;
-    for (std::size_t s = 0; s < sliding.size(); ++s) {
-      const auto [axis, is_upper] = sliding[s];
+    bool may_move = false;
+    for (std::size_t s = 0; s < sides.size(); ++s) {
+      const auto [axis, is_upper, is_free] = sides[s];
       const double at = is_upper ? upper[axis] : lower[axis];
       if (!std::all_of(face.begin(), face.end(),
                        [&, a = axis](Index i) { return std::abs(mesh.nodes(a, i) - at) <= near; }))
         continue;
-      is_sliding = true;
+      may_move = true;
       ++result.n_faces[s];
+      if (is_free) continue;
       for (const auto node : face) result.is_given(axis, node) = true;
     }
-    if (!is_sliding)
+    if (!may_move)
       for (const auto node : face) result.is_given.col(node) = true;
   }
   for (const auto node : wall_nodes) result.is_given.col(node) = true;

@@ -189,6 +189,28 @@ TEST_CASE("the boundary is found from the topology, and sides let their nodes sl
   CHECK(given(0, 0) == Eigen::Vector2i(1, 1)); // where it meets one that does not
   CHECK(given(0, 1) == Eigen::Vector2i(1, 1));
   CHECK(given(4, 3) == Eigen::Vector2i(1, 1)); // the wall's end
+
+  const auto free = constraints(mesh, wall, {{1, false}, {1, true, true}});
+  CHECK(free.n_faces == std::vector<Index>{4, 4});
+  const auto left = [&](int i, int j) { return Eigen::Vector2i(free.is_given.col(i + 5 * j).cast<int>()); };
+  CHECK(left(2, 0) == Eigen::Vector2i(0, 1));
+  CHECK(left(2, 3) == Eigen::Vector2i(0, 0)); // on a side that is free
+  CHECK(left(0, 3) == Eigen::Vector2i(1, 1)); // where it meets one that stays
+}
+
+TEST_CASE("between a wall that is pulled sideways and a side that stays, with free sides, a mesh is sheared evenly")
+{
+  for (const char* text : {"box:6x4,size=3x1", "box:6x4,size=3x1,alternating"}) {
+    CAPTURE(text);
+    const auto [mesh, wall] = sample(text, "y_min");
+    const auto is_given = constraints(mesh, wall, {{0, false, true}, {0, true, true}}).is_given;
+    const Function f = [](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+      return Eigen::Vector2d(1.0 - x[1], 0.5 * (1.0 - x[1]));
+    };
+
+    // Laplace's natural condition is that nothing changes across the side, as here. (An elastic body's is no traction.)
+    CHECK(largest_error(mesh, motion(mesh, masud_hughes(mesh, is_given), is_given, f), f) < solved);
+  }
 }
 
 TEST_CASE("between a wall that is pushed and its opposite, with sliding sides, a mesh is squeezed evenly")
