@@ -109,20 +109,37 @@ std::vector<double> last_output(const RunFolder& folder, const std::string& file
   return io::ImageReader(image, file).f64(path);
 }
 
-/// Least-squares slope of u_y over X between 4 and 30 solid cells behind the shock's foot.
-double slope_behind_shock(const RunFolder& folder, const std::string& file, double length, double foot)
+/// What is left of the interface behind the superseismic shock's foot, in a window of solid cells.
+struct Wake {
+  double slope;   ///< least squares of u_y over X
+  double scatter; ///< standard deviation of the gas's pressure on the wall over its mean; 0: there is no gas
+};
+
+/// @param farthest  solid cells behind the foot; the window begins 4 behind it
+Wake wake(const RunFolder& folder, const std::string& file, double foot, double farthest = 30.0)
 {
+  const auto x = last_output(folder, "mesh.h5", "/structure/wet/pane_0/reference_coordinates");
   const auto u = last_output(folder, file, "/structure/wet/pane_0/displacement");
-  const auto n_nodes = u.size() / 2;
-  const double h = length / static_cast<double>(n_nodes - 1);
+  const double h = 0.8 / static_cast<double>(x.size() / 2 - 1);
+  const auto is_inside = [&](double at) { return at >= foot - farthest * h && at <= foot - 4.0 * h; };
   double n = 0, x_sum = 0, y_sum = 0, xx = 0, xy = 0;
-  for (std::size_t i = 0; i < n_nodes; ++i) {
-    const double x = h * static_cast<double>(i), y = u[2 * i + 1];
-    if (x < foot - 30 * h || x > foot - 4 * h) continue;
-    n += 1, x_sum += x, y_sum += y, xx += x * x, xy += x * y;
+  for (std::size_t i = 0; i < x.size(); i += 2) {
+    if (!is_inside(x[i])) continue;
+    n += 1, x_sum += x[i], y_sum += u[i + 1], xx += x[i] * x[i], xy += x[i] * u[i + 1];
   }
   REQUIRE(n >= 20);
-  return (n * xy - x_sum * y_sum) / (n * xx - x_sum * x_sum);
+  Wake result{(n * xy - x_sum * y_sum) / (n * xx - x_sum * x_sum), 0.0};
+  const auto history = read_history(folder / "out" / "history.csv");
+  if (!history.contains("fluid.wall.pressure.mean")) return result;
+  const auto p = last_output(folder, file, "/fluid/wall/pane_0/pressure");
+  double n_faces = 0, sum = 0, squares = 0; // faces are equal and in their order along x
+  for (std::size_t f = 0; f < p.size(); ++f) {
+    if (!is_inside(0.8 * (static_cast<double>(f) + 0.5) / static_cast<double>(p.size()))) continue;
+    n_faces += 1, sum += p[f], squares += p[f] * p[f];
+  }
+  const double mean = sum / n_faces;
+  result.scatter = std::sqrt(std::max(0.0, squares / n_faces - mean * mean)) / mean;
+  return result;
 }
 
 constexpr double exact_slope = 0.0080259782256; // of the fronts' jumps, loads on the reference surface
@@ -207,7 +224,22 @@ TEST_CASE("a step in pressure bends the half space behind it by the exact slope"
                  {"run.dt=2e-7", "output.every=300", "fluid.mesh=line:80,from=0:0,to=0.8:0",
                   "structure.mesh=box:70x35,size=0.8x0.4,origin=0:-0.4"});
 
-  CHECK(std::abs(slope_behind_shock(folder, "000000300.h5", 0.8, foot_after_60_us) / exact_slope - 1.0) < 2e-3);
+  CHECK(std::abs(wake(folder, "000000300.h5", foot_after_60_us).slope / exact_slope - 1.0) < 2e-3);
+}
+
+TEST_CASE("the first load is that on a wall which moves as the solid does at the start")
+{
+  const RunFolder folder;
+  run_paper_case(folder, "superseismic",
+                 {"run.end_time=2e-7", "run.dt=2e-7", "fluid.mesh=box:40x20,size=0.8x0.4",
+                  "structure.mesh=box:35x17,size=0.8x0.4,origin=0:-0.4"});
+
+  // Behind the foot, at x = 0.1 m, the gas goes along the wall, and so the pressure is the gas's own, wherever the wall
+  // moves with its nodes' velocity. Taken to be at rest it would be 47 % higher.
+  const auto p = last_output(folder, "000000000.h5", "/fluid/wall/pane_0/pressure");
+  REQUIRE(p.size() == 40);
+  for (std::size_t f = 0; f < 3; ++f) // 0.02 m a face; the fourth sees a node beyond the foot
+    CHECK(p[f] == doctest::Approx(5.5294040012e10).epsilon(1e-6)); // the file's numbers have seven to ten digits
 }
 
 TEST_SUITE("full")
@@ -315,11 +347,54 @@ TEST_SUITE("full")
     CHECK(std::abs(history.at("fluid.wall.force_y").back() - 210.0) < 5.0); // N/m, another implementation's pressures
   }
 
-  TEST_CASE("the solid behind the superseismic shock has the exact slope, with 5 % of the paper's gas")
+  TEST_CASE(
+      "the interface behind the superseismic shock with 5 % of the paper's gas: its slope, and how even its load is")
+  {
+    // Both fronts ring, and so does the shock: what the transfers do stands above that. Of the pressure's scatter
+    // another program has 4.3e-3 and 1.4e-3 for the projections.
+    const auto run = [](const Sets& sets) {
+      const RunFolder folder;
+      run_paper_case(folder, "superseismic_lite", sets);
+      return wake(folder, "000000600.h5", foot_after_60_us);
+    };
+    const auto refined = run({});
+    CHECK(std::abs(refined.slope / exact_slope - 1.0) < 5e-3);
+    CHECK(refined.scatter < 4e-4);
+    const auto projected = run({"transfer.module=node_projection"});
+    CHECK(std::abs(projected.slope / exact_slope - 1.0) < 5e-3);
+    CHECK(std::abs(projected.scatter / 4.3e-3 - 1.0) < 0.15); // the figures have two digits, the limiter is another
+    const auto points = run({"transfer.module=quadrature_projection", "transfer.points=2"});
+    CHECK(std::abs(points.slope / exact_slope - 1.0) < 5e-3);
+    CHECK(std::abs(points.scatter / 1.4e-3 - 1.0) < 0.15);
+  }
+
+  TEST_CASE("the interface behind the superseismic shock, on triangles")
+  {
+    const std::string fluid = "fluid.mesh=box:160x80,size=0.8x0.4,delaunay",
+                      solid = "structure.mesh=box:140x70,size=0.8x0.4,origin=0:-0.4,delaunay",
+                      irregular = ",perturb=0.2";
+    const auto run = [](const std::string& name, const Sets& sets, double farthest) {
+      const RunFolder folder;
+      run_paper_case(folder, name, sets);
+      return wake(folder, "000000600.h5", foot_after_60_us, farthest).slope / exact_slope - 1.0;
+    };
+    CHECK(std::abs(run("superseismic_one_way", {solid}, 30.0)) < 2e-3);
+    CHECK(std::abs(run("superseismic_lite", {fluid, solid}, 30.0)) < 5e-3);
+    CHECK(std::abs(run("superseismic_lite", {fluid + irregular}, 30.0)) < 5e-3);
+    // Behind the fronts irregular cells ring, and nothing damps that: u_y scatters around the exact one by 0.26 of what
+    // it grows by over a cell (rms), at any mesh width. A least-squares slope over n cells scatters by sqrt(12)/n^1.5
+    // of that: 7e-3 over the 26 of the other bounds, 2.1e-3 over 56.
+    CHECK(std::abs(run("superseismic_one_way", {solid + irregular}, 60.0)) < 5e-3);
+    CHECK(std::abs(run("superseismic_lite", {fluid + irregular, solid + irregular}, 60.0)) < 5e-3);
+  }
+
+  TEST_CASE("the interface behind the superseismic shock with the paper's gas keeps the exact slope near the shock")
   {
     const RunFolder folder;
-    run_paper_case(folder, "superseismic_lite", {});
+    run_paper_case(folder, "superseismic", {});
 
-    CHECK(std::abs(slope_behind_shock(folder, "000000600.h5", 0.8, foot_after_60_us) / exact_slope - 1.0) < 5e-3);
+    constexpr double exact =
+        0.15711059069; // traction along the deformed normal, per length of the undeformed interface
+    CHECK(std::abs(wake(folder, "000001200.h5", foot_after_60_us).slope / exact - 1.0) < 5e-3);
   }
 }
