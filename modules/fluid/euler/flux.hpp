@@ -33,33 +33,61 @@ template <int D, class T> struct FaceStates {
 /// which is einfeldt1988's form and cannot be negative. Quotients share two divisions: a division takes as long as
 /// twenty products.
 ///
-/// @return  (rho, rho u, rho E) through the face, times its area
-template <int D, class T>
-MULLION_INLINE std::array<T, n_values<D>> hllc_flux(const Gas& gas, const FaceStates<D, T>& face)
+/// It comes in three parts, so that a loop over each of them has the roots and quotients of several groups of faces
+/// under way.
+template <class T> struct HllcMeans {
+  T b, cc_l, cc_r; ///< the weight, and the squares of the sound speeds
+};
+template <class T> struct HllcWaves {
+  T u_l, u_r, s_l, s_r; ///< of the gas along the normal, and of the outer waves
+};
+
+template <int D, class T> MULLION_INLINE HllcMeans<T> hllc_means(const Gas& gas, const FaceStates<D, T>& face)
 {
   constexpr int P = D + 1; // the pressure
   const auto& [left, right, normal, area, s] = face;
   const T rho_l = left[0], rho_r = right[0], p_l = left[P], p_r = right[P];
-  T u_l{}, u_r{}, square_l{}, square_r{}, jump{};
-  for (int d = 0; d < D; ++d) {
-    u_l += left[d + 1] * normal[d];
-    u_r += right[d + 1] * normal[d];
-    square_l += left[d + 1] * left[d + 1];
-    square_r += right[d + 1] * right[d + 1];
-    const T apart = right[d + 1] - left[d + 1];
-    jump += apart * apart;
-  }
   const T product = rho_l * rho_r, mean_rho = root<T>(product);
   const T both = rho_l + mean_rho;
   const T share = 1.0 / (product * both);
-  const T b = mean_rho * product * share;
-  const T cc_l = gas.gamma * p_l * (rho_r * both * share), cc_r = gas.gamma * p_r * (rho_l * both * share);
+  return {mean_rho * product * share, gas.gamma * p_l * (rho_r * both * share),
+          gas.gamma * p_r * (rho_l * both * share)};
+}
+
+template <int D, class T>
+MULLION_INLINE HllcWaves<T> hllc_waves(const Gas& gas, const FaceStates<D, T>& face, const HllcMeans<T>& means)
+{
+  const auto& [left, right, normal, area, s] = face;
+  const auto& [b, cc_l, cc_r] = means;
+  T u_l{}, u_r{}, jump{};
+  for (int d = 0; d < D; ++d) {
+    u_l += left[d + 1] * normal[d];
+    u_r += right[d + 1] * normal[d];
+    const T apart = right[d + 1] - left[d + 1];
+    jump += apart * apart;
+  }
   const T c_l = root<T>(cc_l), c_r = root<T>(cc_r);
   const T u = u_l + b * (u_r - u_l);
   const T c = root<T>(cc_l + b * (cc_r - cc_l) + 0.5 * (gas.gamma - 1.0) * (b - b * b) * jump);
-
   const T lowest_l = u_l - c_l, lowest = u - c, highest_r = u_r + c_r, highest = u + c;
-  const T s_l = lowest_l < lowest ? lowest_l : lowest, s_r = highest_r > highest ? highest_r : highest;
+  return {u_l, u_r, lowest_l < lowest ? lowest_l : lowest, highest_r > highest ? highest_r : highest};
+}
+
+/// The last part.
+/// @return  (rho, rho u, rho E) through the face, times its area
+template <int D, class T>
+MULLION_INLINE std::array<T, n_values<D>> hllc_flux(const Gas& gas, const FaceStates<D, T>& face,
+                                                    const HllcWaves<T>& waves)
+{
+  constexpr int P = D + 1; // the pressure
+  const auto& [left, right, normal, area, s] = face;
+  const auto& [u_l, u_r, s_l, s_r] = waves;
+  const T rho_l = left[0], rho_r = right[0], p_l = left[P], p_r = right[P];
+  T square_l = left[1] * left[1], square_r = right[1] * right[1];
+  for (int d = 2; d <= D; ++d) {
+    square_l += left[d] * left[d];
+    square_r += right[d] * right[d];
+  }
   const T m_l = rho_l * (s_l - u_l), m_r = rho_r * (s_r - u_r);         // < 0 and > 0
   const T above = p_r - p_l + m_l * u_l - m_r * u_r, below = m_l - m_r; // S_M = above / below, below < 0
 
@@ -92,6 +120,13 @@ MULLION_INLINE std::array<T, n_values<D>> hllc_flux(const Gas& gas, const FaceSt
   for (int d = 0; d < D; ++d) flux[d + 1] = mass * (is_left ? left[d + 1] : right[d + 1]) + along * normal[d];
   flux[P] = energy * through + push * velocity;
   return flux;
+}
+
+/// All of it.
+template <int D, class T>
+MULLION_INLINE std::array<T, n_values<D>> hllc_flux(const Gas& gas, const FaceStates<D, T>& face)
+{
+  return hllc_flux<D, T>(gas, face, hllc_waves<D, T>(gas, face, hllc_means<D, T>(gas, face)));
 }
 
 /// Roe's flux difference splitting, |u - s -+ c| rounded below 0.05 c~ (roe1981, harten1983).

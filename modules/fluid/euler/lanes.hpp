@@ -50,7 +50,7 @@ template <class T> MULLION_INLINE T root(const T& x)
 
 template <class T> MULLION_INLINE T size_of(const T& x) { return x < 0.0 ? -x : x; }
 
-/// Is a comparison true in any lane?
+/// Is any lane not zero?
 template <class Mask> MULLION_INLINE bool any(const Mask& mask)
 {
   constexpr std::size_t n = sizeof(Mask) / sizeof(std::int64_t);
@@ -60,6 +60,25 @@ template <class Mask> MULLION_INLINE bool any(const Mask& mask)
     return any(__builtin_shufflevector(mask, mask, 0, 1) | __builtin_shufflevector(mask, mask, 2, 3));
   else return (mask[0] | mask[1]) != 0;
 }
+
+// Comparisons choose between two vectors and are never values themselves: the compiler would make those lane by lane.
+
+/// Is x > 0 in all lanes? Not where it is no number.
+template <class T> MULLION_INLINE bool all_positive(const T& x)
+{
+  using Mask = decltype(x > 0.0);
+  return !any(x > 0.0 ? Mask{} : ~Mask{});
+}
+
+/// Is x > y in any lane, or no number?
+template <class T> MULLION_INLINE bool any_above(const T& x, const T& y)
+{
+  using Mask = decltype(x <= y);
+  return any(x <= y ? Mask{} : ~Mask{});
+}
+
+/// x where that is not positive or no number, y elsewhere: positive where both are.
+template <class T> MULLION_INLINE T if_positive(const T& x, const T& y) { return x > 0.0 ? y : x; }
 
 /// Rows of N faces or cells, turned: variable v of all of them in lanes v.
 template <int n, class Rows, std::size_t N>
@@ -74,9 +93,19 @@ MULLION_INLINE std::array<Lanes<N>, n> turned(const std::array<Rows, N>& rows)
     lanes = {__builtin_shufflevector(a, c, 0, 1, 4, 5), __builtin_shufflevector(b, d, 0, 1, 4, 5),
              __builtin_shufflevector(a, c, 2, 3, 6, 7), __builtin_shufflevector(b, d, 2, 3, 6, 7)};
   } else if constexpr (n == 4 && N == 8) {
-    const auto low = turned<4, Rows, 4>(std::array<Rows, 4>{rows[0], rows[1], rows[2], rows[3]});
-    const auto high = turned<4, Rows, 4>(std::array<Rows, 4>{rows[4], rows[5], rows[6], rows[7]});
-    for (int v = 0; v < n; ++v) lanes[v] = __builtin_shufflevector(low[v], high[v], 0, 1, 2, 3, 4, 5, 6, 7);
+    const auto both = [&rows](std::size_t i, std::size_t k) __attribute__((always_inline))
+    {
+      return __builtin_shufflevector(rows[i], rows[k], 0, 1, 2, 3, 4, 5, 6, 7);
+    };
+    const auto r02 = both(0, 2), r13 = both(1, 3), r46 = both(4, 6), r57 = both(5, 7);
+    const auto a = __builtin_shufflevector(r02, r13, 0, 8, 2, 10, 4, 12, 6, 14);
+    const auto b = __builtin_shufflevector(r02, r13, 1, 9, 3, 11, 5, 13, 7, 15);
+    const auto c = __builtin_shufflevector(r46, r57, 0, 8, 2, 10, 4, 12, 6, 14);
+    const auto d = __builtin_shufflevector(r46, r57, 1, 9, 3, 11, 5, 13, 7, 15);
+    lanes = {__builtin_shufflevector(a, c, 0, 1, 4, 5, 8, 9, 12, 13),
+             __builtin_shufflevector(b, d, 0, 1, 4, 5, 8, 9, 12, 13),
+             __builtin_shufflevector(a, c, 2, 3, 6, 7, 10, 11, 14, 15),
+             __builtin_shufflevector(b, d, 2, 3, 6, 7, 10, 11, 14, 15)};
   } else {
     for (int v = 0; v < n; ++v)
       for (std::size_t i = 0; i < N; ++i) lanes[v][i] = rows[i][v];
@@ -91,14 +120,24 @@ MULLION_INLINE std::array<Row<D>, N> turned_back(const std::array<Lanes<N>, n>& 
   if constexpr (n == 4 && N == 4) {
     return turned<4, Lanes<4>, 4>(lanes);
   } else if constexpr (n == 4 && N == 8) {
-    std::array<Lanes<4>, 4> low, high;
-    for (std::size_t v = 0; v < 4; ++v) {
-      low[v] = __builtin_shufflevector(lanes[v], lanes[v], 0, 1, 2, 3);
-      high[v] = __builtin_shufflevector(lanes[v], lanes[v], 4, 5, 6, 7);
-    }
-    low = turned<4, Lanes<4>, 4>(low);
-    high = turned<4, Lanes<4>, 4>(high);
-    return {low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]};
+    // Pairs of a row stand together: a and c hold the rows 0, 2, 4, 6, b and d the others.
+    const auto a = __builtin_shufflevector(lanes[0], lanes[1], 0, 8, 2, 10, 4, 12, 6, 14);
+    const auto b = __builtin_shufflevector(lanes[0], lanes[1], 1, 9, 3, 11, 5, 13, 7, 15);
+    const auto c = __builtin_shufflevector(lanes[2], lanes[3], 0, 8, 2, 10, 4, 12, 6, 14);
+    const auto d = __builtin_shufflevector(lanes[2], lanes[3], 1, 9, 3, 11, 5, 13, 7, 15);
+    const auto r02 = __builtin_shufflevector(a, c, 0, 1, 8, 9, 2, 3, 10, 11);
+    const auto r46 = __builtin_shufflevector(a, c, 4, 5, 12, 13, 6, 7, 14, 15);
+    const auto r13 = __builtin_shufflevector(b, d, 0, 1, 8, 9, 2, 3, 10, 11);
+    const auto r57 = __builtin_shufflevector(b, d, 4, 5, 12, 13, 6, 7, 14, 15);
+    const auto first = [](const Lanes<8>& both) __attribute__((always_inline))
+    {
+      return __builtin_shufflevector(both, both, 0, 1, 2, 3);
+    };
+    const auto second = [](const Lanes<8>& both) __attribute__((always_inline))
+    {
+      return __builtin_shufflevector(both, both, 4, 5, 6, 7);
+    };
+    return {first(r02), first(r13), second(r02), second(r13), first(r46), first(r57), second(r46), second(r57)};
   } else {
     std::array<Row<D>, N> rows{};
     for (std::size_t v = 0; v < n; ++v)

@@ -67,6 +67,14 @@ template <int D> void Solver<D>::size_rings(Part& part) const
   const auto length = std::bit_ceil(reach + sweep_block + 1);
   part.residuals.assign(length, {});
   part.swept.assign(length, 0.0);
+  std::size_t most = 0; // faces of a block
+  for (std::size_t c = part.begin; c < part.end; c += sweep_block) {
+    const auto end = std::min(c + sweep_block, part.end);
+    most = std::max(most, static_cast<std::size_t>(mesh_.face_begin[end] - mesh_.face_begin[c]));
+  }
+  part.fluxes.assign(most + 8, {}); // groups of up to eight: the last one may be incomplete
+  part.totals.assign(sweep_block, {});
+  part.volumes.assign(sweep_block, 0.0);
 }
 
 template <int D> Outcome<D> Solver<D>::place(const Nodes<D>& x)
@@ -267,7 +275,9 @@ template <int D> std::size_t Solver<D>::memory() const
            of(geometry_.planes);
   bytes += of(values_) + of(next_values_) + of(gradients_) + of(sums_) + of(swept_sums_) + of(local_dt_) + of(rates_) +
            of(prescribed_) + of(stage_pressure_) + of(wall_);
-  for (const auto& part : parts_) bytes += sizeof(*part) + of(part->halo) + of(part->residuals) + of(part->swept);
+  for (const auto& part : parts_)
+    bytes += sizeof(*part) + of(part->halo) + of(part->residuals) + of(part->swept) + of(part->fluxes) +
+             of(part->totals) + of(part->volumes);
   return bytes;
 }
 

@@ -64,6 +64,11 @@ template <int D> struct SolverPart {
   // that a face has met. Rings, a power of two long; a cell's place is its number modulo the length.
   std::vector<Values<D>> residuals;
   std::vector<double> swept;
+
+  // Of a block of cells: through the faces that they own, what leaves them, and their volumes at the stage's end where
+  // these move.
+  std::vector<Values<D>> fluxes, totals;
+  std::vector<double> volumes;
 };
 
 /// Cells whose faces are computed before the cells are finished.
@@ -139,14 +144,27 @@ private:
   void find_courant(Part& part, const Step& step);
   void sweep(Part& part, const Step& step, const Stage& stage);
   template <int N, bool is_second, Flux flux> void sweep_loop(Part& part, const Step& step, const Stage& stage);
-  template <int N> void finish(Part& part, const Step& step, const Stage& stage, std::size_t begin, std::size_t end);
-  /// Puts the states that boundaries set beside the gas.
+  /// What enters a part's cells through faces that others own.
+  template <int N, bool is_second, Flux flux> void sweep_halo(Part& part) const;
+  /// Fluxes through the faces [begin, end) that a block of cells owns.
+  /// @param b  the first boundary face that is not below `begin`; then the first not below `end`
+  template <int N, bool is_second, Flux flux>
+  void find_fluxes(Part& part, std::size_t begin, std::size_t end, std::size_t& b);
+  /// Totals of the cells [begin, end), a block, which own the fluxes.
+  void add_up(Part& part, std::size_t begin, std::size_t end) const;
+  /// Makes changes of the totals, and volumes, where cells have their own steps, volumes move, or stages are added up.
+  void weigh(Part& part, const Step& step, const Stage& stage, std::size_t begin, std::size_t end);
+  /// Next values of the block of cells from `begin` on, from amounts - dt totals. After the last stage these are the
+  /// amounts.
+  /// @param amounts, volumes  of the block
+  template <int N>
+  void finish(Part& part, std::span<Values<D>> amounts, bool is_last, double dt, const double* volumes,
+              std::size_t begin);
+  /// Puts the state that a boundary sets beside the gas at its face b, lane i.
+  template <std::size_t N> void set_beside(std::size_t b, std::size_t i, FaceStates<D, Lanes<N>>& states) const;
+  /// Puts the flux that a boundary imposes at its face b, lane i of the states; notes the pressure on walls.
   template <std::size_t N>
-  void set_beside(const std::array<std::size_t, N>& faces, FaceStates<D, Lanes<N>>& states) const;
-  /// Puts the fluxes that boundaries impose; notes the pressure on walls.
-  template <std::size_t N>
-  void set_fluxes(const std::array<std::size_t, N>& faces, const FaceStates<D, Lanes<N>>& states,
-                  std::array<Lanes<N>, n_values<D>>& fluxes);
+  void set_flux(std::size_t b, std::size_t i, const FaceStates<D, Lanes<N>>& states, Values<D>& flux);
   void find_prescribed(const Step& step, double time_of_stage);
   void size_rings(Part& part) const;
   void add_wall(const Step& step, double weight);

@@ -2,6 +2,7 @@
 // several at a time: what belongs to one stands together in memory, is loaded as a row, and rows of several are turned
 // into vectors. What few faces need, boundaries and states that are no gas, is done apart, so that the loops have no
 // branches.
+#include "groups.hpp"
 #include "solver.hpp"
 
 #include <algorithm>
@@ -11,7 +12,6 @@ namespace mullion::euler {
 
 namespace {
 
-template <int N> using Numbers = std::array<std::size_t, static_cast<std::size_t>(N)>;
 template <int N> using Count = std::integral_constant<int, N>;
 
 // Eight or four at a time where the processor can. The bits are the same: each operation is rounded by itself, no
@@ -42,14 +42,6 @@ template <class Loop> void run_with(Width width, const Loop& loop)
   loop(Count<4>{});
 }
 
-/// `first` and those behind it; the last one again where there are fewer.
-template <int N> MULLION_INLINE Numbers<N> numbers_from(std::size_t first, std::size_t end)
-{
-  Numbers<N> numbers;
-  for (std::size_t i = 0; i < N; ++i) numbers[i] = first + i < end ? first + i : end - 1;
-  return numbers;
-}
-
 template <int D> MULLION_INLINE Row<D> plane_row(const FacePlane<D>& plane)
 {
   static_assert(sizeof plane == sizeof(Values<D>));
@@ -57,6 +49,11 @@ template <int D> MULLION_INLINE Row<D> plane_row(const FacePlane<D>& plane)
   __builtin_memcpy(&row, &plane, sizeof plane);
   return row;
 }
+
+constexpr std::size_t faces_ahead = 128; ///< memory is asked for so early: some hundred nanoseconds
+constexpr std::size_t cells_ahead = faces_ahead / 2;
+/// Groups of faces that each part of the flux is computed for before the next part.
+constexpr std::size_t groups_together = 8;
 
 /// What the states at faces are made from.
 template <int D> struct FaceArrays {
@@ -68,47 +65,51 @@ template <int D> struct FaceArrays {
   const Index* neighbour;
 };
 
+/// The cells on one side of faces; any where there is none.
+template <int N> MULLION_INLINE std::array<Index, N> cells_beside(const Index* side, const Numbers<N>& faces)
+{
+  std::array<Index, N> cells;
+  for (std::size_t i = 0; i < N; ++i) cells[i] = std::max<Index>(side[faces[i]], 0);
+  return cells;
+}
+
 /// Values of one side at the faces, the cells' own where the gradient leads to what is no gas.
 template <int D, int N, bool is_second>
 MULLION_INLINE std::array<Lanes<N>, n_values<D>> side_of(const FaceArrays<D>& in, const Numbers<N>& faces,
-                                                         const Numbers<N>& cells, std::size_t side)
+                                                         const Index* cells, std::size_t side)
 {
   std::array<Row<D>, N> rows;
   for (std::size_t i = 0; i < N; ++i) {
-    rows[i] = row_of<D>(in.values[cells[i]]);
-    if constexpr (is_second) rows[i] = value_at<D>(rows[i], in.gradients[cells[i]], in.offsets[faces[i]][side]);
+    const auto c = static_cast<std::size_t>(cells[i]);
+    rows[i] = row_of<D>(in.values[c]);
+    if constexpr (is_second) rows[i] = value_at<D>(rows[i], in.gradients[c], in.offsets[faces[i]][side]);
   }
   auto state = turned<n_values<D>, Row<D>, N>(rows);
   if constexpr (is_second) {
-    const auto is_fine = (state[0] > 0.0) & (state[D + 1] > 0.0);
-    if (any(~is_fine)) [[unlikely]] {
+    const auto least = if_positive(state[0], state[D + 1]);
+    if (!all_positive(least)) [[unlikely]] {
       for (std::size_t i = 0; i < N; ++i) rows[i] = row_of<D>(in.values[cells[i]]);
       const auto plain = turned<n_values<D>, Row<D>, N>(rows);
-      for (std::size_t v = 0; v < n_values<D>; ++v) state[v] = is_fine ? state[v] : plain[v];
+      for (std::size_t v = 0; v < n_values<D>; ++v) state[v] = least > 0.0 ? state[v] : plain[v];
     }
   }
   return state;
 }
 
-/// States and planes of faces; on the boundary the gas stands on both sides.
+/// States and planes of faces between the cells left[i] and right[i].
 template <int D, int N, bool is_second>
-MULLION_INLINE FaceStates<D, Lanes<N>> states_at(const FaceArrays<D>& in, const Numbers<N>& faces)
+MULLION_INLINE FaceStates<D, Lanes<N>> states_at(const FaceArrays<D>& in, const Numbers<N>& faces, const Index* left,
+                                                 const Index* right)
 {
-  Numbers<N> owners, others;
   std::array<Row<D>, N> planes;
-  for (std::size_t i = 0; i < N; ++i) {
-    const Index other = in.neighbour[faces[i]], owner = in.owner[faces[i]];
-    owners[i] = static_cast<std::size_t>(owner);
-    others[i] = static_cast<std::size_t>(other < 0 ? owner : other);
-    planes[i] = plane_row<D>(in.planes[faces[i]]);
-  }
+  for (std::size_t i = 0; i < N; ++i) planes[i] = plane_row<D>(in.planes[faces[i]]);
   FaceStates<D, Lanes<N>> states;
   const auto plane = turned<D + 2, Row<D>, N>(planes);
   for (std::size_t d = 0; d < D; ++d) states.normal[d] = plane[d];
   states.area = plane[D];
   states.speed = plane[D + 1];
-  states.left = side_of<D, N, is_second>(in, faces, owners, 0);
-  states.right = side_of<D, N, is_second>(in, faces, others, 1);
+  states.left = side_of<D, N, is_second>(in, faces, left, 0);
+  states.right = side_of<D, N, is_second>(in, faces, right, 1);
   return states;
 }
 
@@ -123,35 +124,42 @@ MULLION_INLINE void planes_of(const Mesh<D>& mesh, const Nodes<D>& x, const Node
     const double *at = x.data(), *speed = v.data();
     const auto x_step = x.outerStride(), v_step = v.outerStride();
     const double near_dt = 0.5 * stage.near_part * dt, far_dt = 0.5 * stage.far_part * dt;
-    for (std::size_t f = begin; f < end; f += N) {
-      const auto faces = numbers_from<N>(f, end);
-      std::array<Row<2>, N> places, velocities;
-      for (std::size_t i = 0; i < N; ++i) {
-        const auto a = face_nodes[faces[i]][0], b = face_nodes[faces[i]][1];
-        __builtin_memcpy(&places[i], at + a * x_step, 16);
-        __builtin_memcpy(reinterpret_cast<char*>(&places[i]) + 16, at + b * x_step, 16);
-        __builtin_memcpy(&velocities[i], speed + a * v_step, 16);
-        __builtin_memcpy(reinterpret_cast<char*>(&velocities[i]) + 16, speed + b * v_step, 16);
-      }
-      const auto [xa, ya, xb, yb] = turned<4, Row<2>, N>(places);
-      const auto [ua, va, ub, vb] = turned<4, Row<2>, N>(velocities);
-      const Pack along_x = xb - xa, along_y = yb - ya, turn_x = ub - ua, turn_y = vb - va;
-      const Pack sum_x = 0.5 * (ua + ub), sum_y = 0.5 * (va + vb);
-      Pack area_x = along_y + near_dt * turn_y, area_y = -(along_x + near_dt * turn_x);
-      Pack rate = sum_x * area_x + sum_y * area_y;
-      if (stage.far != 0.0) {
-        const Pack far_x = along_y + far_dt * turn_y, far_y = -(along_x + far_dt * turn_x);
-        const Pack far_rate = sum_x * far_x + sum_y * far_y;
-        area_x = stage.near * area_x + stage.far * far_x;
-        area_y = stage.near * area_y + stage.far * far_y;
-        rate = stage.near * rate + stage.far * far_rate;
-      }
-      const Pack area = root<Pack>(area_x * area_x + area_y * area_y);
-      const Pack per_area = 1.0 / area;
-      const auto rows = turned_back<2, N, 4>({area_x * per_area, area_y * per_area, area, rate * per_area});
-      for (std::size_t i = 0; i < N; ++i)
-        __builtin_memcpy(static_cast<void*>(&planes[faces[i]]), &rows[i], sizeof rows[i]);
-    }
+    const auto both = [](const double* first, const double* second) __attribute__((always_inline))
+    {
+      Lanes<2> a, b;
+      __builtin_memcpy(&a, first, sizeof a);
+      __builtin_memcpy(&b, second, sizeof b);
+      return __builtin_shufflevector(a, b, 0, 1, 2, 3);
+    };
+    for_groups<N>(
+        begin, end, [&](const Numbers<N>& faces) __attribute__((always_inline)) {
+          fetch<N>(face_nodes, faces[0] + faces_ahead);
+          fetch<N>(planes, faces[0] + faces_ahead);
+          std::array<Row<2>, N> places, velocities;
+          for (std::size_t i = 0; i < N; ++i) {
+            const auto a = face_nodes[faces[i]][0], b = face_nodes[faces[i]][1];
+            places[i] = both(at + a * x_step, at + b * x_step);
+            velocities[i] = both(speed + a * v_step, speed + b * v_step);
+          }
+          const auto [xa, ya, xb, yb] = turned<4, Row<2>, N>(places);
+          const auto [ua, va, ub, vb] = turned<4, Row<2>, N>(velocities);
+          const Pack along_x = xb - xa, along_y = yb - ya, turn_x = ub - ua, turn_y = vb - va;
+          const Pack sum_x = 0.5 * (ua + ub), sum_y = 0.5 * (va + vb);
+          Pack area_x = along_y + near_dt * turn_y, area_y = -(along_x + near_dt * turn_x);
+          Pack rate = sum_x * area_x + sum_y * area_y;
+          if (stage.far != 0.0) {
+            const Pack far_x = along_y + far_dt * turn_y, far_y = -(along_x + far_dt * turn_x);
+            const Pack far_rate = sum_x * far_x + sum_y * far_y;
+            area_x = stage.near * area_x + stage.far * far_x;
+            area_y = stage.near * area_y + stage.far * far_y;
+            rate = stage.near * rate + stage.far * far_rate;
+          }
+          const Pack area = root<Pack>(area_x * area_x + area_y * area_y);
+          const Pack per_area = 1.0 / area;
+          const auto rows = turned_back<2, N, 4>({area_x * per_area, area_y * per_area, area, rate * per_area});
+          for (std::size_t i = 0; i < N; ++i)
+            __builtin_memcpy(static_cast<void*>(&planes[faces[i]]), &rows[i], sizeof rows[i]);
+        });
   } else {
     for (std::size_t f = begin; f < end; ++f) {
       const auto near = sweep_of<D>(mesh.face_nodes[f], x, v, stage.near_part * dt);
@@ -205,24 +213,21 @@ template <int D> void Solver<D>::find_values(Part& part, std::span<const Values<
       scheme_.width, [&](auto n) __attribute__((always_inline)) {
         constexpr int N = n;
         const double* volumes = geometry_.volume.data();
-        for (std::size_t first = part.begin; first < part.end; first += N) {
-          const auto cells = numbers_from<N>(first, part.end);
-          std::array<Row<D>, N> rows;
-          Lanes<N> volume;
-          for (std::size_t i = 0; i < N; ++i) {
-            rows[i] = row_of<D>(amounts[cells[i]]);
-            volume[i] = volumes[cells[i]];
-          }
-          const auto w = primitive<D>(scheme_.gas, turned<n_values<D>, Row<D>, N>(rows), volume);
-          rows = turned_back<D, N>(w);
-          for (std::size_t i = 0; i < N; ++i) put_row<D>(rows[i], values_[cells[i]]);
-          if (any(~((w[0] > 0.0) & (w[D + 1] > 0.0))) && part.bad_cell < 0) [[unlikely]]
-            for (const auto c : cells)
-              if (!is_gas<D>(values_[c]) && part.bad_cell < 0) {
-                part.bad_cell = static_cast<Index>(c);
-                next_values_[c] = values_[c];
-              }
-        }
+        for_groups<N>(
+            part.begin, part.end, [&](const Numbers<N>& cells) __attribute__((always_inline)) {
+              std::array<Row<D>, N> rows;
+              for (std::size_t i = 0; i < N; ++i) rows[i] = row_of<D>(amounts[cells[i]]);
+              const auto volume = lanes_at<N>(volumes, cells);
+              const auto w = primitive<D>(scheme_.gas, turned<n_values<D>, Row<D>, N>(rows), volume);
+              rows = turned_back<D, N>(w);
+              for (std::size_t i = 0; i < N; ++i) put_row<D>(rows[i], values_[cells[i]]);
+              if (!all_positive(if_positive(w[0], w[D + 1])) && part.bad_cell < 0) [[unlikely]]
+                for (const auto c : cells)
+                  if (!is_gas<D>(values_[c]) && part.bad_cell < 0) {
+                    part.bad_cell = static_cast<Index>(c);
+                    next_values_[c] = values_[c];
+                  }
+            });
       });
 }
 
@@ -252,82 +257,233 @@ template <int D> void Solver<D>::find_courant(Part& part, const Step& step)
         constexpr int N = n;
         using Pack = Lanes<N>;
         const auto* planes = geometry_.planes.data();
-        for (std::size_t first = part.begin; first < part.end; first += N) {
-          const auto cells = numbers_from<N>(first, part.end);
-          std::array<Row<D>, N> rows;
-          Numbers<N> begin, n_faces;
-          std::size_t most = 0;
-          Pack volume;
-          for (std::size_t i = 0; i < N; ++i) {
-            const auto c = cells[i];
-            rows[i] = row_of<D>(values_[c]);
-            volume[i] = geometry_.volume[c];
-            begin[i] = static_cast<std::size_t>(mesh_.cell_face_begin[c]);
-            n_faces[i] = static_cast<std::size_t>(mesh_.cell_face_begin[c + 1]) - begin[i];
-            most = std::max(most, n_faces[i]);
-          }
-          const auto w = turned<n_values<D>, Row<D>, N>(rows);
-          const Pack sound = root<Pack>(scheme_.gas.gamma * w[D + 1] / w[0]);
-          Pack sum{}; // lambda = 1/2 sum (|u_n - s| + c) A
-          for (std::size_t k = 0; k < most; ++k) {
-            Pack is_face;
-            for (std::size_t i = 0; i < N; ++i) {
-              const auto at = begin[i] + (k < n_faces[i] ? k : 0);
-              rows[i] = plane_row<D>(planes[static_cast<std::size_t>(mesh_.cell_faces[at]) / 2]);
-              is_face[i] = k < n_faces[i] ? 1.0 : 0.0;
-            }
-            const auto plane = turned<D + 2, Row<D>, N>(rows);
-            Pack relative = -plane[D + 1];
-            for (std::size_t d = 0; d < D; ++d) relative += w[d + 1] * plane[d];
-            sum += (size_of<Pack>(relative) + sound) * (plane[D] * is_face);
-          }
-          const Pack per_step = 0.5 * sum / volume;
-          const Pack courant = step.courant > 0.0 ? Pack{} + step.courant : per_step * step.dt;
-          for (std::size_t i = 0; i < N && step.courant > 0.0; ++i) local_dt_[cells[i]] = step.courant / per_step[i];
-          if (any(~(courant <= part.courant))) // also not-a-number
-            for (std::size_t i = 0; i < N; ++i)
-              if (!(courant[i] <= part.courant)) {
-                part.courant = courant[i];
-                part.courant_cell = static_cast<Index>(cells[i]);
+        const Index *faces = mesh_.cell_faces.data(), *face_begin = mesh_.cell_face_begin.data();
+        for_groups<N>(
+            part.begin, part.end, [&](const Numbers<N>& cells) __attribute__((always_inline)) {
+              fetch<2 * N>(planes, static_cast<std::size_t>(mesh_.face_begin[cells[0]]) + faces_ahead);
+              fetch<4 * N>(faces, static_cast<std::size_t>(face_begin[cells[0]]) + 4 * cells_ahead);
+              fetch<N>(values_.data(), cells[0] + cells_ahead);
+              fetch<N>(geometry_.volume.data(), cells[0] + cells_ahead);
+              std::array<Row<D>, N> rows;
+              Numbers<N> begin, n_faces;
+              std::size_t most = 0, fewest = most_cell_faces<D>;
+              for (std::size_t i = 0; i < N; ++i) {
+                const auto c = cells[i];
+                rows[i] = row_of<D>(values_[c]);
+                begin[i] = static_cast<std::size_t>(face_begin[c]);
+                n_faces[i] = static_cast<std::size_t>(face_begin[c + 1]) - begin[i];
+                most = std::max(most, n_faces[i]);
+                fewest = std::min(fewest, n_faces[i]);
               }
-        }
+              const auto volume = lanes_at<N>(geometry_.volume.data(), cells);
+              const auto w = turned<n_values<D>, Row<D>, N>(rows);
+              const Pack sound = root<Pack>(scheme_.gas.gamma * w[D + 1] / w[0]);
+              Pack sum{}; // lambda = 1/2 sum (|u_n - s| + c) A
+              const auto add_faces = [&](std::size_t k, bool all_have_it) __attribute__((always_inline))
+              {
+                Pack is_face = Pack{} + 1.0;
+                for (std::size_t i = 0; i < N; ++i) {
+                  const bool has_it = all_have_it || k < n_faces[i];
+                  rows[i] = plane_row<D>(planes[static_cast<std::size_t>(faces[begin[i] + (has_it ? k : 0)]) / 2]);
+                  if (!has_it) is_face[i] = 0.0;
+                }
+                const auto plane = turned<D + 2, Row<D>, N>(rows);
+                Pack relative = -plane[D + 1];
+                for (std::size_t d = 0; d < D; ++d) relative += w[d + 1] * plane[d];
+                sum += (size_of<Pack>(relative) + sound) * (plane[D] * is_face);
+              };
+              for (std::size_t k = 0; k < fewest; ++k) add_faces(k, true);
+              for (std::size_t k = fewest; k < most; ++k) add_faces(k, false);
+              const Pack per_step = 0.5 * sum / volume;
+              const Pack courant = step.courant > 0.0 ? Pack{} + step.courant : per_step * step.dt;
+              for (std::size_t i = 0; i < N && step.courant > 0.0; ++i)
+                local_dt_[cells[i]] = step.courant / per_step[i];
+              if (any_above<Pack>(courant, Pack{} + part.courant)) // also not-a-number
+                for (std::size_t i = 0; i < N; ++i)
+                  if (!(courant[i] <= part.courant)) {
+                    part.courant = courant[i];
+                    part.courant_cell = static_cast<Index>(cells[i]);
+                  }
+            });
       });
 }
 
 template <int D>
 template <std::size_t N>
-void Solver<D>::set_beside(const std::array<std::size_t, N>& faces, FaceStates<D, Lanes<N>>& states) const
+void Solver<D>::set_beside(std::size_t b, std::size_t i, FaceStates<D, Lanes<N>>& states) const
 {
-  for (std::size_t i = 0; i < N; ++i) {
-    const Index other = mesh_.neighbour[faces[i]];
-    if (other >= 0) continue;
-    const auto b = static_cast<std::size_t>(-1 - other);
-    const auto& condition = conditions_[static_cast<std::size_t>(mesh_.boundary[b].patch)];
-    for (std::size_t v = 0; v < n_values<D>; ++v)
-      states.right[v][i] = condition.kind == Kind::far_field    ? condition.state[v]
-                           : condition.kind == Kind::prescribed ? prescribed_[b][v]
-                                                                : states.left[v][i]; // its flux is replaced
-  }
+  const auto& condition = conditions_[static_cast<std::size_t>(mesh_.boundary[b].patch)];
+  if (!is_upwinded(condition.kind)) return; // its flux is replaced
+  const auto& beside = condition.kind == Kind::far_field ? condition.state : prescribed_[b];
+  for (std::size_t v = 0; v < n_values<D>; ++v) states.right[v][i] = beside[v];
 }
 
 template <int D>
 template <std::size_t N>
-void Solver<D>::set_fluxes(const std::array<std::size_t, N>& faces, const FaceStates<D, Lanes<N>>& states,
-                           std::array<Lanes<N>, n_values<D>>& fluxes)
+void Solver<D>::set_flux(std::size_t b, std::size_t i, const FaceStates<D, Lanes<N>>& states, Values<D>& flux)
 {
-  for (std::size_t i = 0; i < N; ++i) {
-    const Index other = mesh_.neighbour[faces[i]];
-    if (other >= 0) continue;
-    const auto b = static_cast<std::size_t>(-1 - other);
-    const auto& condition = conditions_[static_cast<std::size_t>(mesh_.boundary[b].patch)];
-    if (is_upwinded(condition.kind)) continue;
-    const auto& plane = geometry_.planes[faces[i]];
-    Values<D> w;
-    for (std::size_t v = 0; v < w.size(); ++v) w[v] = states.left[v][i];
-    if (condition.kind == Kind::wall)
-      stage_pressure_[b] = wall_pressure<D>(scheme_.gas, w, along<D>(w, plane.normal.data()) - plane.speed);
-    const auto flux = boundary_flux<D>(scheme_.gas, condition, w, plane.normal.data(), plane.speed);
-    for (std::size_t v = 0; v < w.size(); ++v) fluxes[v][i] = flux[v] * plane.area;
+  const auto& condition = conditions_[static_cast<std::size_t>(mesh_.boundary[b].patch)];
+  if (is_upwinded(condition.kind)) return;
+  const auto& plane = geometry_.planes[static_cast<std::size_t>(mesh_.boundary[b].face)];
+  Values<D> w;
+  for (std::size_t v = 0; v < w.size(); ++v) w[v] = states.left[v][i];
+  if (condition.kind == Kind::wall)
+    stage_pressure_[b] = wall_pressure<D>(scheme_.gas, w, along<D>(w, plane.normal.data()) - plane.speed);
+  flux = boundary_flux<D>(scheme_.gas, condition, w, plane.normal.data(), plane.speed);
+  for (auto& value : flux) value *= plane.area;
+}
+
+template <int D> template <int N, bool is_second, Flux flux> MULLION_INLINE void Solver<D>::sweep_halo(Part& part) const
+{
+  const FaceArrays<D> in{values_.data(),           gradients_.data(),  geometry_.planes.data(),
+                         geometry_.offsets.data(), mesh_.owner.data(), mesh_.neighbour.data()};
+  const std::size_t mask = part.residuals.size() - 1;
+  for_groups<N>(
+      0, part.halo.size(), [&](const Numbers<N>& at) __attribute__((always_inline)) {
+        Numbers<N> faces;
+        for (std::size_t i = 0; i < N; ++i) faces[i] = static_cast<std::size_t>(part.halo[at[i]]);
+        const auto left = cells_beside<N>(in.owner, faces), right = cells_beside<N>(in.neighbour, faces);
+        const auto states = states_at<D, N, is_second>(in, faces, left.data(), right.data());
+        const auto rows = turned_back<D, N>(flux == Flux::hllc ? hllc_flux<D, Lanes<N>>(scheme_.gas, states)
+                                                               : roe_flux<D, Lanes<N>>(scheme_.gas, states));
+        for (std::size_t i = 0; i < N && at[i] == at[0] + i; ++i) {
+          auto& residual = part.residuals[static_cast<std::size_t>(right[i]) & mask];
+          put_row<D>(row_of<D>(residual) - rows[i], residual);
+          const auto& plane = in.planes[faces[i]];
+          part.swept[static_cast<std::size_t>(right[i]) & mask] -= plane.speed * plane.area;
+        }
+      });
+}
+
+// Each loop does one thing for several groups, so that a group's chain of roots and quotients, or its wait for memory,
+// goes on beside those of others: as far as the processor looks ahead, there are not two groups' whole fluxes.
+template <int D>
+template <int N, bool is_second, Flux flux>
+MULLION_INLINE void Solver<D>::find_fluxes(Part& part, std::size_t begin, std::size_t end, std::size_t& b)
+{
+  using Pack = Lanes<N>;
+  const FaceArrays<D> in{values_.data(),           gradients_.data(),  geometry_.planes.data(),
+                         geometry_.offsets.data(), mesh_.owner.data(), mesh_.neighbour.data()};
+  const Gas gas = scheme_.gas;
+  const auto face_of = [&](std::size_t at) __attribute__((always_inline))
+  {
+    return at < mesh_.boundary.size() ? static_cast<std::size_t>(mesh_.boundary[at].face) : mesh_.n_faces;
+  };
+  std::array<FaceStates<D, Pack>, groups_together> states;
+  std::array<HllcMeans<Pack>, groups_together> means;
+  std::array<HllcWaves<Pack>, groups_together> waves;
+  for (auto first = begin; first < end; first += groups_together * N) {
+    std::size_t count = 0, next = b;
+    const auto gather = [&](const Numbers<N>& faces) __attribute__((always_inline))
+    {
+      // A complete group within the mesh finds its cells' numbers in place.
+      const auto last = faces[N - 1];
+      const bool is_inner = face_of(next) > last && last - faces[0] == N - 1;
+      const Index *left = in.owner + faces[0], *right = in.neighbour + faces[0];
+      std::array<Index, N> owners, others;
+      if (!is_inner) [[unlikely]] {
+        owners = cells_beside<N>(in.owner, faces);
+        others = cells_beside<N>(in.neighbour, faces);
+        left = owners.data();
+        right = others.data();
+      }
+      fetch<N>(in.planes, faces[0] + faces_ahead);
+      fetch<N>(in.owner, faces[0] + faces_ahead);
+      fetch<N>(in.neighbour, faces[0] + faces_ahead);
+      fetch<N / 2>(in.values, static_cast<std::size_t>(right[N - 1]) + cells_ahead);
+      if constexpr (is_second) {
+        fetch<N>(in.offsets, faces[0] + faces_ahead);
+        fetch<N / 2>(in.gradients, static_cast<std::size_t>(right[N - 1]) + cells_ahead);
+      }
+      auto state = states_at<D, N, is_second>(in, faces, left, right);
+      if (!is_inner) [[unlikely]] { // a copy: what a function has the address of does not stay in registers
+        auto changed = state;
+        for (; face_of(next) <= last; ++next) set_beside<N>(next, face_of(next) - faces[0], changed);
+        state = changed;
+      }
+      states[count] = state;
+      if constexpr (flux == Flux::hllc) means[count] = hllc_means<D, Pack>(gas, state);
+      ++count;
+    };
+    for_groups<N>(first, std::min(first + groups_together * N, end), gather);
+    if constexpr (flux == Flux::hllc)
+      for (std::size_t k = 0; k < count; ++k) waves[k] = hllc_waves<D, Pack>(gas, states[k], means[k]);
+    Values<D>* const fluxes = part.fluxes.data() + (first - begin);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto rows = turned_back<D, N>(flux == Flux::hllc ? hllc_flux<D, Pack>(gas, states[k], waves[k])
+                                                             : roe_flux<D, Pack>(gas, states[k]));
+      for (std::size_t i = 0; i < N; ++i) put_row<D>(rows[i], fluxes[k * N + i]);
+    }
+    for (; b < next; ++b) {
+      const auto at = face_of(b) - first;
+      set_flux<N>(b, at % N, states[at / N], fluxes[at]);
+    }
+  }
+}
+
+template <int D> MULLION_INLINE void Solver<D>::add_up(Part& part, std::size_t begin, std::size_t end) const
+{
+  const std::size_t mask = part.residuals.size() - 1, part_end = part.end;
+  const Index *face_begin = mesh_.face_begin.data(), first = face_begin[begin];
+  const Index* const neighbour = mesh_.neighbour.data() + first;
+  Values<D>* const residuals = part.residuals.data();
+  Values<D>* total_of_cell = part.totals.data();
+  const Values<D>* const fluxes = part.fluxes.data();
+  std::size_t f = 0; // of the block's
+  for (auto c = begin; c < end; ++c) {
+    auto& own = residuals[c & mask];
+    auto total = row_of<D>(own);
+    put_row<D>(Row<D>{}, own);
+    const auto pass = [&](std::size_t face) __attribute__((always_inline))
+    {
+      const auto row = row_of<D>(fluxes[face]);
+      total += row;
+      const auto other = static_cast<std::size_t>(neighbour[face]);
+      if (other >= part_end) return; // another part's, or none: -1 - b
+      auto& residual = residuals[other & mask];
+      put_row<D>(row_of<D>(residual) - row, residual);
+    };
+    const auto last = static_cast<std::size_t>(face_begin[c + 1] - first);
+    if (last - f == 2) { // most cells of squares
+      pass(f);
+      pass(f + 1);
+      f = last;
+    }
+    for (; f < last; ++f) pass(f);
+    put_row<D>(total, *total_of_cell++);
+  }
+}
+
+template <int D>
+void Solver<D>::weigh(Part& part, const Step& step, const Stage& stage, std::size_t begin, std::size_t end)
+{
+  const std::size_t mask = part.swept.size() - 1;
+  const bool is_local = step.courant > 0.0;
+  if (step.v != nullptr) {
+    const auto last = static_cast<std::size_t>(mesh_.face_begin[end]);
+    for (auto f = static_cast<std::size_t>(mesh_.face_begin[begin]); f < last; ++f) {
+      const double through = geometry_.planes[f].speed * geometry_.planes[f].area;
+      const auto other = static_cast<std::size_t>(mesh_.neighbour[f]);
+      part.swept[static_cast<std::size_t>(mesh_.owner[f]) & mask] += through;
+      if (other < part.end) part.swept[other & mask] -= through;
+    }
+  }
+  for (auto c = begin; c < end; ++c) {
+    auto total = row_of<D>(part.totals[c - begin]);
+    double through = part.swept[c & mask];
+    part.swept[c & mask] = 0.0;
+    if (is_local && stage.number == 0) rates_[c] = -total[0] / geometry_.volume[c];
+    if (stage.sums) {
+      put_row<D>(row_of<D>(sums_[c]) + stage.weight * total, sums_[c]);
+      swept_sums_[c] += stage.weight * through;
+      if (stage.is_last) {
+        total = row_of<D>(sums_[c]);
+        through = swept_sums_[c];
+      }
+    }
+    const double dt = (stage.is_last ? 1.0 : stage.advance) * (is_local ? local_dt_[c] : step.dt);
+    put_row<D>(dt * total, part.totals[c - begin]);
+    part.volumes[c - begin] = geometry_.volume[c] + dt * through;
   }
 }
 
@@ -335,65 +491,22 @@ template <int D>
 template <int N, bool is_second, Flux flux>
 MULLION_INLINE void Solver<D>::sweep_loop(Part& part, const Step& step, const Stage& stage)
 {
-  const FaceArrays<D> in{values_.data(),           gradients_.data(),  geometry_.planes.data(),
-                         geometry_.offsets.data(), mesh_.owner.data(), mesh_.neighbour.data()};
-  const bool is_moving = step.v != nullptr;
-  const Gas gas = scheme_.gas;
-  Values<D>* const residuals = part.residuals.data();
-  double* const swept = part.swept.data();
-  const std::size_t mask = part.residuals.size() - 1;
-  const auto add = [=](std::size_t cell, const Row<D>& row) __attribute__((always_inline))
-  {
-    auto& residual = residuals[cell & mask];
-    put_row<D>(row_of<D>(residual) + row, residual);
-  };
-
-  // Faces to add up, the first `count` of them; those of a halo enter their neighbours only.
-  const auto add_faces = [&](const Numbers<N>& faces, std::size_t count, bool is_own) __attribute__((always_inline))
-  {
-    auto states = states_at<D, N, is_second>(in, faces);
-    Index lowest = 0;
-    for (const auto f : faces) lowest = std::min(lowest, in.neighbour[f]);
-    if (lowest < 0) [[unlikely]] { // copies: what a function has the address of does not stay in registers
-      auto changed = states;
-      set_beside<N>(faces, changed);
-      states = changed;
-    }
-    auto fluxes = flux == Flux::hllc ? hllc_flux<D, Lanes<N>>(gas, states) : roe_flux<D, Lanes<N>>(gas, states);
-    if (lowest < 0) [[unlikely]] {
-      const auto met = states;
-      auto changed = fluxes;
-      set_fluxes<N>(faces, met, changed);
-      fluxes = changed;
-    }
-    const auto rows = turned_back<D, N>(fluxes);
-    const Lanes<N> through = states.speed * states.area;
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto owner = static_cast<std::size_t>(in.owner[faces[i]]);
-      const Index other = in.neighbour[faces[i]];
-      const bool is_mine = other >= 0 && static_cast<std::size_t>(other) < part.end;
-      if (is_own) add(owner, rows[i]);
-      if (is_mine) add(static_cast<std::size_t>(other), -rows[i]);
-      if (is_moving) {
-        if (is_own) swept[owner & mask] += through[i];
-        if (is_mine) swept[static_cast<std::size_t>(other) & mask] -= through[i];
-      }
-    }
-  };
-
-  for (std::size_t first = 0; first < part.halo.size(); first += N) { // lower faces than all of its own
-    const auto at = numbers_from<N>(first, part.halo.size());
-    Numbers<N> faces;
-    for (std::size_t i = 0; i < N; ++i) faces[i] = static_cast<std::size_t>(part.halo[at[i]]);
-    add_faces(faces, std::min<std::size_t>(N, part.halo.size() - first), false);
-  }
+  // Elsewhere all cells have one time step and keep their volumes, and the stage's fluxes are all that counts.
+  const bool is_weighed = step.v != nullptr || step.courant > 0.0 || stage.sums;
+  const double dt = is_weighed ? 1.0 : (stage.is_last ? 1.0 : stage.advance) * step.dt;
+  sweep_halo<N, is_second, flux>(part); // lower faces than all of its own
+  const auto& boundary = mesh_.boundary;
+  const auto is_below = [](const BoundaryFace<D>& face, Index f) { return face.face < f; };
+  auto b = static_cast<std::size_t>(
+      std::lower_bound(boundary.begin(), boundary.end(), mesh_.face_begin[part.begin], is_below) - boundary.begin());
   for (std::size_t cell = part.begin; cell < part.end; cell += sweep_block) {
-    const auto cells_end = std::min(cell + sweep_block, part.end);
-    const auto faces_end = static_cast<std::size_t>(mesh_.face_begin[cells_end]);
-    auto f = static_cast<std::size_t>(mesh_.face_begin[cell]);
-    for (; f + N <= faces_end; f += N) add_faces(numbers_from<N>(f, f + N), N, true);
-    if (f < faces_end) add_faces(numbers_from<N>(f, faces_end), faces_end - f, true);
-    finish<N>(part, step, stage, cell, cells_end); // all of their faces are in
+    const auto end = std::min(cell + sweep_block, part.end);
+    find_fluxes<N, is_second, flux>(part, static_cast<std::size_t>(mesh_.face_begin[cell]),
+                                    static_cast<std::size_t>(mesh_.face_begin[end]), b);
+    add_up(part, cell, end);
+    if (is_weighed) weigh(part, step, stage, cell, end);
+    const double* const volumes = is_weighed ? part.volumes.data() : geometry_.volume.data() + cell;
+    finish<N>(part, step.amounts.subspan(cell, end - cell), stage.is_last, dt, volumes, cell);
   }
 }
 
@@ -412,56 +525,33 @@ template <int D> void Solver<D>::sweep(Part& part, const Step& step, const Stage
 
 template <int D>
 template <int N>
-MULLION_INLINE void Solver<D>::finish(Part& part, const Step& step, const Stage& stage, std::size_t begin,
-                                      std::size_t end)
+MULLION_INLINE void Solver<D>::finish(Part& part, std::span<Values<D>> amounts, bool is_last, double dt,
+                                      const double* volumes, std::size_t begin)
 {
-  const std::size_t mask = part.residuals.size() - 1;
-  const bool is_moving = step.v != nullptr, is_local = step.courant > 0.0, is_last = stage.is_last;
-  const double part_of_dt = is_last ? 1.0 : stage.advance;
-  const double* const volumes = geometry_.volume.data();
-  Values<D>* const amounts = step.amounts.data();
-  Values<D>* const next = next_values_.data();
-  for (std::size_t first = begin; first < end; first += N) {
-    const auto cells = numbers_from<N>(first, end);
-    const auto count = std::min<std::size_t>(N, end - first);
-    std::array<Row<D>, N> rows;
-    Lanes<N> volume;
-    for (std::size_t i = 0; i < N; ++i) {
-      const auto c = cells[i];
-      const double dt = part_of_dt * (is_local ? local_dt_[c] : step.dt);
-      auto total = row_of<D>(part.residuals[c & mask]);
-      double through = is_moving ? part.swept[c & mask] : 0.0;
-      if (is_local && stage.number == 0) rates_[c] = -total[0] / volumes[c];
-      if (stage.sums) {
-        if (i < count) {
-          put_row<D>(row_of<D>(sums_[c]) + stage.weight * total, sums_[c]);
-          swept_sums_[c] += stage.weight * through;
-        }
-        if (is_last) {
-          total = row_of<D>(sums_[c]);
-          through = swept_sums_[c];
-        }
-      }
-      rows[i] = row_of<D>(amounts[c]) - dt * total;
-      volume[i] = volumes[c] + dt * through;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      put_row<D>(Row<D>{}, part.residuals[cells[i] & mask]);
-      if (is_moving) part.swept[cells[i] & mask] = 0.0;
-      if (is_last) put_row<D>(rows[i], amounts[cells[i]]);
-    }
-    const auto w = primitive<D>(scheme_.gas, turned<n_values<D>, Row<D>, N>(rows), volume);
-    rows = turned_back<D, N>(w);
-    for (std::size_t i = 0; i < count; ++i) put_row<D>(rows[i], next[cells[i]]);
-    const auto is_fine = (volume > 0.0) & (w[0] > 0.0) & (w[D + 1] > 0.0);
-    if (any(~is_fine)) [[unlikely]]
-      for (std::size_t i = 0; i < count && part.bad_cell < 0; ++i) {
-        if (is_fine[i]) continue;
-        part.bad_cell = static_cast<Index>(cells[i]);
-        part.bad_shape = !(volume[i] > 0.0);
-        if (part.bad_shape) next[cells[i]][0] = volume[i];
-      }
-  }
+  Values<D>* const next = next_values_.data() + begin;
+  const Values<D>* const totals = part.totals.data();
+  for_groups<N>(
+      0, amounts.size(), [&](const Numbers<N>& cells) __attribute__((always_inline)) { // of the block's
+        fetch<N>(amounts.data(), cells[0] + sweep_block);
+        fetch<N>(next, cells[0] + sweep_block);
+        fetch<N>(volumes, cells[0] + sweep_block);
+        std::array<Row<D>, N> rows;
+        for (std::size_t i = 0; i < N; ++i) rows[i] = row_of<D>(amounts[cells[i]]) - dt * row_of<D>(totals[cells[i]]);
+        if (is_last)
+          for (std::size_t i = 0; i < N; ++i) put_row<D>(rows[i], amounts[cells[i]]);
+        const auto volume = lanes_at<N>(volumes, cells);
+        const auto w = primitive<D>(scheme_.gas, turned<n_values<D>, Row<D>, N>(rows), volume);
+        rows = turned_back<D, N>(w);
+        for (std::size_t i = 0; i < N; ++i) put_row<D>(rows[i], next[cells[i]]);
+        const auto least = if_positive(volume, if_positive(w[0], w[D + 1]));
+        if (!all_positive(least)) [[unlikely]]
+          for (std::size_t i = 0; i < N && part.bad_cell < 0; ++i) {
+            if (least[i] > 0.0) continue;
+            part.bad_cell = static_cast<Index>(begin + cells[i]);
+            part.bad_shape = !(volume[i] > 0.0);
+            if (part.bad_shape) next[cells[i]][0] = volume[i];
+          }
+      });
 }
 
 // The rest of the class is in solver.cpp.
