@@ -458,20 +458,21 @@ template <int D>
 void Solver<D>::weigh(Part& part, const Step& step, const Stage& stage, std::size_t begin, std::size_t end)
 {
   const std::size_t mask = part.swept.size() - 1;
-  const bool is_local = step.courant > 0.0;
-  if (step.v != nullptr) {
-    const auto last = static_cast<std::size_t>(mesh_.face_begin[end]);
-    for (auto f = static_cast<std::size_t>(mesh_.face_begin[begin]); f < last; ++f) {
-      const double through = geometry_.planes[f].speed * geometry_.planes[f].area;
-      const auto other = static_cast<std::size_t>(mesh_.neighbour[f]);
-      part.swept[static_cast<std::size_t>(mesh_.owner[f]) & mask] += through;
-      if (other < part.end) part.swept[other & mask] -= through;
-    }
-  }
+  const bool is_moving = step.v != nullptr, is_local = step.courant > 0.0;
+  const FacePlane<D>* const planes = geometry_.planes.data();
+  const Index* const neighbour = mesh_.neighbour.data();
+  double* const swept = part.swept.data();
   for (auto c = begin; c < end; ++c) {
     auto total = row_of<D>(part.totals[c - begin]);
-    double through = part.swept[c & mask];
-    part.swept[c & mask] = 0.0;
+    double through = swept[c & mask];
+    swept[c & mask] = 0.0;
+    const auto last = static_cast<std::size_t>(mesh_.face_begin[c + 1]);
+    for (auto f = static_cast<std::size_t>(mesh_.face_begin[c]); f < last && is_moving; ++f) {
+      const double by_face = planes[f].speed * planes[f].area;
+      through += by_face;
+      const auto other = static_cast<std::size_t>(neighbour[f]);
+      if (other < part.end) swept[other & mask] -= by_face;
+    }
     if (is_local && stage.number == 0) rates_[c] = -total[0] / geometry_.volume[c];
     if (stage.sums) {
       put_row<D>(row_of<D>(sums_[c]) + stage.weight * total, sums_[c]);
@@ -491,7 +492,7 @@ template <int D>
 template <int N, bool is_second, Flux flux>
 MULLION_INLINE void Solver<D>::sweep_loop(Part& part, const Step& step, const Stage& stage)
 {
-  // Elsewhere all cells have one time step and keep their volumes, and the stage's fluxes are all that counts.
+  // Otherwise all cells have one time step and keep their volumes, and only this stage's fluxes count.
   const bool is_weighed = step.v != nullptr || step.courant > 0.0 || stage.sums;
   const double dt = is_weighed ? 1.0 : (stage.is_last ? 1.0 : stage.advance) * step.dt;
   sweep_halo<N, is_second, flux>(part); // lower faces than all of its own
