@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -166,6 +168,17 @@ bool wait_for_candidate(const test::RunFolder& folder)
   });
 }
 
+/// Until a command talks to the run: on a busy machine another one that was started later may come first.
+bool wait_for_connection(const test::Process& command)
+{
+  return test::wait_until([&] {
+    std::error_code gone; // files close while we look
+    for (const auto& file : fs::directory_iterator(fmt::format("/proc/{}/fd", command.pid()), gone))
+      if (fs::read_symlink(file.path(), gone).string().starts_with("socket:")) return true;
+    return false;
+  });
+}
+
 } // namespace
 
 TEST_CASE("a candidate in a process that attaches slowly does not hold the run, and what it derived is of the exchange")
@@ -201,6 +214,7 @@ TEST_CASE("while a candidate attaches a checkpoint is written, other changes wai
   REQUIRE(wait_for_candidate(folder));
 
   const auto set = folder.start_command({"set", test::piston_name, "structure.mass=600"});
+  REQUIRE(wait_for_connection(*set));
   const auto checkpoint = folder.command({"checkpoint", test::piston_name});
 
   CHECK_MESSAGE(checkpoint.exit_code == 0, checkpoint.err);
