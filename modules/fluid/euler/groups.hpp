@@ -2,6 +2,7 @@
 // is asked for before it is needed. What is computed for a group is in lanes.hpp and the formulas.
 #pragma once
 
+#include "geometry.hpp"
 #include "lanes.hpp"
 
 #include <array>
@@ -50,5 +51,17 @@ template <int count, class T> MULLION_INLINE void fetch(const T* things, std::si
   for (std::size_t at = 0; at < count * sizeof(T); at += 64)
     __builtin_prefetch(reinterpret_cast<const void*>(begin + at));
 }
+
+/// A face's plane as a row: n, A, s.
+template <int D> MULLION_INLINE Row<D> plane_row(const FacePlane<D>& plane)
+{
+  static_assert(sizeof plane == sizeof(Values<D>));
+  Row<D> row{};
+  __builtin_memcpy(&row, &plane, sizeof plane);
+  return row;
+}
+
+inline constexpr std::size_t faces_ahead = 128; ///< memory is asked for so early: some hundred nanoseconds
+inline constexpr std::size_t cells_ahead = faces_ahead / 2;
 
 } // namespace mullion::euler
